@@ -1,0 +1,1 @@
+//! The `unipbd` command line as a library: scene files, runs, logs, pictures.

@@ -1,0 +1,26 @@
+//! A unified 2D particle solver: liquids, gas, smoke and rigid bodies are particles with a phase,
+//! held together by groups of constraints and solved by one position-based loop
+//! (Macklin et al. 2014, "Unified particle physics for real-time applications").
+//!
+//! ```no_run
+//! use unipbd_core::scene::Scene;
+//! # fn scene() -> Scene { Scene::default() }
+//! let mut solver = scene().build(Default::default())?;
+//! while solver.time() < 1.0 {
+//!     let report = solver.step_frame()?;
+//!     println!("{:.3} s: {} substeps", solver.time(), report.substeps);
+//! }
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+pub mod bodies;
+pub mod math;
+pub mod observe;
+pub mod particles;
+pub mod phase;
+pub mod scene;
+pub mod step;
+
+pub use math::{Real, Vector, Vector64};
+pub use phase::{MaterialIndex, Phase};
+pub use step::{BuildOptions, FrameReport, Solver, SolverError};

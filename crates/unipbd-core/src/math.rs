@@ -1,0 +1,42 @@
+//! Numbers and vectors. The only file that names a float type for particle columns.
+//!
+//! Particle columns and kernels use [`Real`] (f32, or f64 with the `f64` feature); body poses,
+//! impulses and everything summed over many particles use f64.
+
+#[cfg(not(feature = "f64"))]
+mod precision {
+    /// Scalar of the particle columns.
+    pub type Real = f32;
+    /// 2D vector of the particle columns.
+    pub type Vector = glam::Vec2;
+}
+#[cfg(feature = "f64")]
+mod precision {
+    /// Scalar of the particle columns.
+    pub type Real = f64;
+    /// 2D vector of the particle columns.
+    pub type Vector = glam::DVec2;
+}
+pub use precision::{Real, Vector};
+
+/// 2D vector in double precision: body poses, scene coordinates, sums.
+pub type Vector64 = glam::DVec2;
+
+/// Rounds a double-precision scalar to the particle precision.
+#[inline]
+pub fn real(value: f64) -> Real {
+    value as Real
+}
+
+/// Rounds a double-precision vector to the particle precision.
+#[inline]
+pub fn vector(value: Vector64) -> Vector {
+    Vector::new(value.x as Real, value.y as Real)
+}
+
+/// Widens a particle vector to double precision.
+#[inline]
+pub fn wide(value: Vector) -> Vector64 {
+    #[allow(clippy::unnecessary_cast)]
+    Vector64::new(value.x as f64, value.y as f64)
+}

@@ -1,0 +1,156 @@
+use serde::{Deserialize, Serialize};
+
+use crate::phase::Phase;
+
+/// A liquid: resists compression, has a free surface.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, default)]
+pub struct Liquid {
+    /// Name by which blocks and emitters refer to it.
+    pub name: String,
+    /// Rest density [kg/m^2].
+    pub density: f64,
+    /// XSPH viscosity per substep, 0 to 1: the fraction of velocity differences that is smoothed.
+    pub viscosity: f64,
+    /// Factor on gravity.
+    pub gravity_factor: f64,
+    /// Colour in pictures and logs, `"#rrggbb"`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub color: Option<String>,
+}
+
+impl Default for Liquid {
+    fn default() -> Self {
+        Liquid { name: String::new(), density: 1000.0, viscosity: 0.0, gravity_factor: 1.0, color: None }
+    }
+}
+
+/// A gas: fills its domain or a plume, resists compression and dilation, carries heat and smoke.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, default)]
+pub struct Gas {
+    /// Name by which blocks and emitters refer to it.
+    pub name: String,
+    /// Rest density [kg/m^2].
+    pub density: f64,
+    /// Acceleration is `gravity_factor` x temperature x gravity; negative lets hot gas rise.
+    pub gravity_factor: f64,
+    /// Drag rate k towards the environment velocity where the gas is thin [1/s].
+    pub drag: f64,
+    /// Strength of vorticity confinement, dimensionless (0 is off; above 5 it adds energy).
+    pub vorticity: f64,
+    /// Diffusivity of temperature [m^2/s].
+    pub conductivity: f64,
+    /// XSPH viscosity per substep, 0 to 1.
+    pub viscosity: f64,
+    /// Time after which a particle is removed [s]; left out, it stays.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lifetime: Option<f64>,
+    /// A particle with no smoke within this distance is removed [m]; left out, it stays.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub keep_radius: Option<f64>,
+    /// Age below which `keep_radius` removes nothing [s].
+    pub keep_age: f64,
+    /// Colour in pictures and logs, `"#rrggbb"`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub color: Option<String>,
+}
+
+impl Default for Gas {
+    fn default() -> Self {
+        Gas {
+            name: String::new(),
+            density: 1.2,
+            gravity_factor: -0.3,
+            drag: 0.0,
+            vorticity: 0.0,
+            conductivity: 0.0,
+            viscosity: 0.0,
+            lifetime: None,
+            keep_radius: None,
+            keep_age: 0.3,
+            color: None,
+        }
+    }
+}
+
+/// Smoke: passive markers that show how the carrier around them moves.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, default)]
+pub struct Smoke {
+    /// Name by which emitters refer to it.
+    pub name: String,
+    /// Time after which a marker is removed [s]; left out, it stays.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub lifetime: Option<f64>,
+    /// Colour in pictures and logs, `"#rrggbb"`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub color: Option<String>,
+}
+
+/// A material of a scene, whatever its kind.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum MaterialRef<'a> {
+    /// A liquid.
+    Liquid(&'a Liquid),
+    /// A gas.
+    Gas(&'a Gas),
+    /// A smoke.
+    Smoke(&'a Smoke),
+}
+
+impl<'a> MaterialRef<'a> {
+    /// The name given in the scene.
+    pub fn name(&self) -> &'a str {
+        match self {
+            MaterialRef::Liquid(liquid) => &liquid.name,
+            MaterialRef::Gas(gas) => &gas.name,
+            MaterialRef::Smoke(smoke) => &smoke.name,
+        }
+    }
+
+    /// The phase of its particles.
+    pub fn phase(&self) -> Phase {
+        match self {
+            MaterialRef::Liquid(_) => Phase::Liquid,
+            MaterialRef::Gas(_) => Phase::Gas,
+            MaterialRef::Smoke(_) => Phase::Smoke,
+        }
+    }
+
+    /// Rest density [kg/m^2]; 0 for smoke, which has no mass.
+    pub fn density(&self) -> f64 {
+        match self {
+            MaterialRef::Liquid(liquid) => liquid.density,
+            MaterialRef::Gas(gas) => gas.density,
+            MaterialRef::Smoke(_) => 0.0,
+        }
+    }
+
+    /// The colour given in the scene.
+    pub fn color(&self) -> Option<&'a str> {
+        match self {
+            MaterialRef::Liquid(liquid) => liquid.color.as_deref(),
+            MaterialRef::Gas(gas) => gas.color.as_deref(),
+            MaterialRef::Smoke(smoke) => smoke.color.as_deref(),
+        }
+    }
+}
+
+impl super::Scene {
+    /// All materials in index order: liquids, gases, smokes, each in file order.
+    pub fn materials(&self) -> impl Iterator<Item = MaterialRef<'_>> {
+        let liquids = self.liquid.iter().map(MaterialRef::Liquid);
+        let gases = self.gas.iter().map(MaterialRef::Gas);
+        let smokes = self.smoke.iter().map(MaterialRef::Smoke);
+        liquids.chain(gases).chain(smokes)
+    }
+
+    /// Index and description of the material with this name.
+    pub fn material(&self, name: &str) -> Option<(usize, MaterialRef<'_>)> {
+        self.materials().enumerate().find(|(_, material)| material.name() == name)
+    }
+}

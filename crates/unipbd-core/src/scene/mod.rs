@@ -1,0 +1,24 @@
+//! The scene description: plain data that can be read, edited, checked and built.
+//!
+//! A [`Scene`] holds no runtime state. [`Scene::validate`] lists everything that is wrong with it,
+//! [`Scene::estimate`] says what it would cost, [`Scene::build`] makes a [`Solver`](crate::Solver).
+
+mod description;
+mod estimate;
+mod layout;
+mod materials;
+mod problem;
+mod settings;
+mod sources;
+mod validate;
+mod walls;
+
+pub use description::{Domain, Environment, Scene, View};
+pub use estimate::Estimate;
+pub use materials::{Gas, Liquid, MaterialRef, Smoke};
+pub use problem::{KeyPath, KeySegment, Problem, Problems};
+pub use settings::{GradientPoint, SolverSettings, Substeps};
+pub use sources::{Block, Disc, Emitter, Profile, Sheath, SmokeSource};
+pub use walls::{HalfPlane, Obstacle, Side, Tank};
+
+pub(crate) use layout::{block_points, disc_points};

@@ -1,0 +1,108 @@
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
+
+/// How the constraints are solved.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, default)]
+pub struct SolverSettings {
+    /// Substeps per frame: `"auto"` or a number.
+    #[cfg_attr(feature = "schema", schemars(with = "SubstepsSchema"))]
+    pub substeps: Substeps,
+    /// Most substeps per frame that `"auto"` may choose.
+    pub max_substeps: u32,
+    /// Target of `"auto"` for the largest compression of a liquid, as a fraction.
+    pub target_compression: f64,
+    /// Constraint iterations per substep.
+    pub iterations: u32,
+    /// Kernel radius h in spacings.
+    pub kernel_radius: f64,
+    /// Where density gradients are evaluated; left out, `start` with gas and `predicted` without.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub gradients: Option<GradientPoint>,
+    /// Relaxation of the density iteration, omega; left out, 0.5 for liquids, 0.4 for gas.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub relaxation: Option<f64>,
+    /// Substeps without gravity before time 0 that bring the start to its rest density.
+    pub settle_substeps: u32,
+}
+
+impl Default for SolverSettings {
+    fn default() -> Self {
+        SolverSettings {
+            substeps: Substeps::Auto,
+            max_substeps: 256,
+            target_compression: 0.01,
+            iterations: 1,
+            kernel_radius: 2.5,
+            gradients: None,
+            relaxation: None,
+            settle_substeps: 40,
+        }
+    }
+}
+
+/// Substeps per frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Substeps {
+    /// As many as speed, depth and the target compression ask for.
+    #[default]
+    Auto,
+    /// This many in every frame.
+    Fixed(u32),
+}
+
+impl Serialize for Substeps {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        match self {
+            Substeps::Auto => serializer.serialize_str("auto"),
+            Substeps::Fixed(count) => serializer.serialize_u32(*count),
+        }
+    }
+}
+
+impl<'de> Deserialize<'de> for Substeps {
+    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+        #[derive(Deserialize)]
+        #[serde(untagged)]
+        enum Form {
+            Count(u32),
+            Word(String),
+        }
+        match Form::deserialize(deserializer)? {
+            Form::Count(count) => Ok(Substeps::Fixed(count)),
+            Form::Word(word) if word == "auto" => Ok(Substeps::Auto),
+            Form::Word(word) => Err(serde::de::Error::custom(format!(
+                "expected \"auto\" or a whole number, found \"{word}\""
+            ))),
+        }
+    }
+}
+
+/// The form of [`Substeps`] in a JSON schema.
+#[cfg(feature = "schema")]
+#[derive(schemars::JsonSchema)]
+#[schemars(untagged)]
+#[allow(dead_code)]
+enum SubstepsSchema {
+    Word(SubstepsWord),
+    Count(u32),
+}
+
+#[cfg(feature = "schema")]
+#[derive(schemars::JsonSchema)]
+#[schemars(rename_all = "lowercase")]
+#[allow(dead_code)]
+enum SubstepsWord {
+    Auto,
+}
+
+/// Where the gradient of the density constraint is evaluated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum GradientPoint {
+    /// At the positions of the start of the substep (less damping, one more pass).
+    Start,
+    /// At the predicted positions.
+    Predicted,
+}

@@ -1,0 +1,61 @@
+use serde::{Deserialize, Serialize};
+
+/// A static straight wall without end; particles stay on the side the normal points to.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct HalfPlane {
+    /// A point on the wall [m].
+    pub point: [f64; 2],
+    /// Direction from the wall towards the particles; need not have length 1.
+    pub normal: [f64; 2],
+    /// Coulomb friction coefficient.
+    #[serde(default)]
+    pub friction: f64,
+}
+
+/// A static container: particles stay inside the rectangle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Tank {
+    /// Lower left corner [m].
+    pub min: [f64; 2],
+    /// Upper right corner [m].
+    pub max: [f64; 2],
+    /// Sides without a wall.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub open: Vec<Side>,
+    /// Coulomb friction coefficient.
+    #[serde(default)]
+    pub friction: f64,
+}
+
+/// A static box: particles stay outside the rectangle.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Obstacle {
+    /// Lower left corner [m].
+    pub min: [f64; 2],
+    /// Upper right corner [m].
+    pub max: [f64; 2],
+    /// Coulomb friction coefficient.
+    #[serde(default)]
+    pub friction: f64,
+}
+
+/// A side of a rectangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Side {
+    /// Smallest x.
+    Left,
+    /// Largest x.
+    Right,
+    /// Smallest y.
+    Bottom,
+    /// Largest y.
+    Top,
+}
