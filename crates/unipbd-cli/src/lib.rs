@@ -1,1 +1,3 @@
 //! The `unipbd` command line as a library: scene files, runs, logs, pictures.
+
+pub mod snapshot;

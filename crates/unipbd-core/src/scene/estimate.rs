@@ -13,7 +13,8 @@ pub struct Estimate {
 impl Scene {
     /// Estimates the cost of the scene without allocating its particles.
     pub fn estimate(&self) -> Estimate {
-        let blocks: f64 = self.block.iter().map(|block| block_counts(block, self.spacing).iter().product::<f64>()).sum();
+        let blocks: f64 =
+            self.block.iter().map(|block| block_counts(block, self.spacing).iter().product::<f64>()).sum();
         let discs: f64 = self.disc.iter().map(|disc| disc_count(disc, self.spacing)).sum();
         Estimate { particles_at_start: (blocks + discs) as u64 }
     }

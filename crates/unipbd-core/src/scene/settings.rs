@@ -71,9 +71,9 @@ impl<'de> Deserialize<'de> for Substeps {
         match Form::deserialize(deserializer)? {
             Form::Count(count) => Ok(Substeps::Fixed(count)),
             Form::Word(word) if word == "auto" => Ok(Substeps::Auto),
-            Form::Word(word) => Err(serde::de::Error::custom(format!(
-                "expected \"auto\" or a whole number, found \"{word}\""
-            ))),
+            Form::Word(word) => {
+                Err(serde::de::Error::custom(format!("expected \"auto\" or a whole number, found \"{word}\"")))
+            }
         }
     }
 }

@@ -80,37 +80,83 @@ impl Solver {
         Ok(FrameReport { substeps: 1, list_builds: 0, emitted: 0, removed: 0 })
     }
     /// Simulated time [s].
-    pub fn time(&self) -> f64 { 0.0 }
+    pub fn time(&self) -> f64 {
+        0.0
+    }
     /// Frames done.
-    pub fn frame(&self) -> u64 { 0 }
+    pub fn frame(&self) -> u64 {
+        0
+    }
     /// Length of a frame [s].
-    pub fn frame_time(&self) -> f64 { 1.0 / 60.0 }
-    pub fn particles(&self) -> usize { 0 }
+    pub fn frame_time(&self) -> f64 {
+        1.0 / 60.0
+    }
+    pub fn particles(&self) -> usize {
+        0
+    }
     // Columns, all in the same row order; rows are re-sorted by steps, ids are stable.
-    pub fn positions(&self) -> &[Vector] { &[] }
-    pub fn velocities(&self) -> &[Vector] { &[] }
-    pub fn ids(&self) -> &[u32] { &[] }
-    pub fn phases(&self) -> &[Phase] { &[] }
-    pub fn material_indices(&self) -> &[MaterialIndex] { &[] }
+    pub fn positions(&self) -> &[Vector] {
+        &[]
+    }
+    pub fn velocities(&self) -> &[Vector] {
+        &[]
+    }
+    pub fn ids(&self) -> &[u32] {
+        &[]
+    }
+    pub fn phases(&self) -> &[Phase] {
+        &[]
+    }
+    pub fn material_indices(&self) -> &[MaterialIndex] {
+        &[]
+    }
     /// C = rho/rho0 - 1 per particle at the last substep; 0 for particles without a density constraint.
-    pub fn density_errors(&self) -> &[Real] { &[] }
+    pub fn density_errors(&self) -> &[Real] {
+        &[]
+    }
     /// Temperature per particle, or empty when no material has one.
-    pub fn temperatures(&self) -> &[Real] { &[] }
+    pub fn temperatures(&self) -> &[Real] {
+        &[]
+    }
     /// Advances each time the set of ids changes (emission, removal).
-    pub fn id_generation(&self) -> u64 { 0 }
-    pub fn materials(&self) -> &[Material] { &[] }
-    pub fn bodies(&self) -> &[Body] { &[] }
-    pub fn wall_outlines(&self) -> &[WallOutline] { &[] }
+    pub fn id_generation(&self) -> u64 {
+        0
+    }
+    pub fn materials(&self) -> &[Material] {
+        &[]
+    }
+    pub fn bodies(&self) -> &[Body] {
+        &[]
+    }
+    pub fn wall_outlines(&self) -> &[WallOutline] {
+        &[]
+    }
     /// Takes the events since the last call.
-    pub fn take_events(&mut self) -> Vec<Event> { Vec::new() }
-    pub fn diagnostics(&self) -> Diagnostics { unimplemented!() }
+    pub fn take_events(&mut self) -> Vec<Event> {
+        Vec::new()
+    }
+    pub fn diagnostics(&self) -> Diagnostics {
+        unimplemented!()
+    }
     /// Wall-clock time spent per stage since the start, under the stage's name.
-    pub fn timings(&self) -> Vec<(&'static str, Duration)> { Vec::new() }
+    pub fn timings(&self) -> Vec<(&'static str, Duration)> {
+        Vec::new()
+    }
     /// Names of the stages this scene runs, in order.
-    pub fn stage_names(&self) -> Vec<&'static str> { Vec::new() }
+    pub fn stage_names(&self) -> Vec<&'static str> {
+        Vec::new()
+    }
     /// Hash of the whole state, in id order: the same on any number of threads.
-    pub fn state_hash(&self) -> u64 { 0 }
-    pub fn memory_bytes(&self) -> usize { 0 }
-    pub fn seed(&self) -> u64 { 0 }
-    pub fn spacing(&self) -> f64 { 0.1 }
+    pub fn state_hash(&self) -> u64 {
+        0
+    }
+    pub fn memory_bytes(&self) -> usize {
+        0
+    }
+    pub fn seed(&self) -> u64 {
+        0
+    }
+    pub fn spacing(&self) -> f64 {
+        0.1
+    }
 }

@@ -1,0 +1,44 @@
+//! One output frame as plain arrays: what the recorder writes, the log reader returns and the
+//! renderer draws. Row order is arbitrary but the same in all columns.
+
+use unipbd_core::bodies::Body;
+use unipbd_core::observe::WallOutline;
+use unipbd_core::phase::{MaterialIndex, Phase};
+
+/// One output frame.
+#[derive(Clone, Debug, Default)]
+pub struct Snapshot {
+    /// Simulated time [s].
+    pub time: f64,
+    /// Positions [m].
+    pub positions: Vec<[f32; 2]>,
+    /// Stable ids.
+    pub ids: Vec<u32>,
+    /// Phase of each particle.
+    pub phases: Vec<Phase>,
+    /// Material of each particle.
+    pub materials: Vec<MaterialIndex>,
+    /// Velocities [m/s], where known.
+    pub velocities: Option<Vec<[f32; 2]>>,
+    /// Density errors C, as fractions, where known.
+    pub density_errors: Option<Vec<f32>>,
+    /// Temperatures, where known.
+    pub temperatures: Option<Vec<f32>>,
+    /// Rigid bodies.
+    pub bodies: Vec<Body>,
+}
+
+/// What stays the same over a run: what a picture or a log needs besides its frames.
+#[derive(Clone, Debug, Default)]
+pub struct Setting {
+    /// Title of the scene.
+    pub name: String,
+    /// Rest distance of particles [m].
+    pub spacing: f64,
+    /// Name, phase and colour of each material.
+    pub materials: Vec<unipbd_core::observe::Material>,
+    /// Walls to draw.
+    pub walls: Vec<WallOutline>,
+    /// Region to show, lower left and upper right [m], where the scene names one.
+    pub view: Option<([f64; 2], [f64; 2])>,
+}
