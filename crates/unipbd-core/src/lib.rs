@@ -15,7 +15,9 @@
 
 pub mod bodies;
 pub mod math;
+pub mod neighbors;
 pub mod observe;
+pub mod parallel;
 pub mod particles;
 pub mod phase;
 pub mod scene;

@@ -1,0 +1,21 @@
+//! Who is near whom: particles sorted by cell, an index of the occupied cells, and a neighbour list
+//! with a skin that outlives several substeps.
+//!
+//! 1. [`Grid::order`] sorts rows by cell (parallel, stable) and indexes the cells: densely while the
+//!    bounding box is reasonable, by sorted keys otherwise, so that memory follows the particles.
+//! 2. The caller permutes its columns by that order.
+//! 3. [`NeighborList::build`] lists all pairs within a radius, eight rows to a block.
+//! 4. [`SkinList`] keeps such a list while the particles have moved less than its skin.
+
+mod cells;
+mod grid;
+mod list;
+mod order;
+mod periodic;
+mod skin;
+mod sparse;
+
+pub use grid::{Cursor, Grid};
+pub use list::{Block, Chunk, Entries, LANES, NeighborList};
+pub use periodic::{Periodic, PeriodicAxis};
+pub use skin::{Motion, SkinList};

@@ -1,0 +1,159 @@
+//! A neighbour list that stays valid while its particles have moved little.
+//!
+//! A list of all pairs within h + skin at the reference positions holds every pair within h as long
+//! as no two particles have come nearer by more than the skin. With d the displacement of a particle
+//! from its reference and c any common drift, |d_i - d_j| <= 2 max |d - c|, so the list holds while
+//! 2 max |d - c| <= skin: a body of fluid that only travels needs no new list.
+
+use super::grid::{Cursor, Grid};
+use super::list::NeighborList;
+use crate::math::{Real, Vector};
+use crate::parallel::Parallelism;
+
+/// How particles have moved since a list was built.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Motion {
+    /// What they have in common [m].
+    pub drift: Vector,
+    /// The largest distance of a displacement from the drift [m]; infinite where one is not a number.
+    pub deviation: Real,
+}
+
+impl Motion {
+    /// The motion from `from` to `to`, in a domain that repeats as `grid` does.
+    pub fn between(from: &[Vector], to: &[Vector], grid: &Grid, parallelism: Parallelism) -> Motion {
+        assert_eq!(from.len(), to.len(), "columns of one particle set have one length");
+        let periodic = grid.periodic();
+        let moved = |row: usize| periodic.min_image(to[row] - from[row]);
+        let none = (Vector::splat(Real::INFINITY), Vector::splat(Real::NEG_INFINITY));
+        let (low, high) = parallelism.reduce(
+            from.len(),
+            |rows| rows.map(moved).fold(none, |(low, high), d| (low.min(d), high.max(d))),
+            |a, b| (a.0.min(b.0), a.1.max(b.1)),
+        );
+        if from.is_empty() {
+            return Motion::default();
+        }
+        // The middle of the displacements' bounding box: no other drift makes the deviation much smaller.
+        let drift = low * 0.5 + high * 0.5;
+        let distance = |row: usize| {
+            let square = (moved(row) - drift).length_squared();
+            if square.is_nan() { Real::INFINITY } else { square }
+        };
+        Motion { drift, deviation: parallelism.max(from.len(), distance).sqrt() }
+    }
+
+    /// The skin a list needs to survive this motion [m].
+    pub fn needed_skin(&self) -> Real {
+        // Displacements, and distances within the list, are rounded.
+        let rounding = 8.0 * Real::EPSILON * (self.drift.abs().max_element() + self.deviation);
+        2.0 * (self.deviation + rounding)
+    }
+}
+
+/// A neighbour list with its reference positions.
+#[derive(Default)]
+pub struct SkinList {
+    list: NeighborList,
+    reference: Vec<Vector>,
+    radius: Real,
+    skin: Real,
+    builds: u64,
+}
+
+impl SkinList {
+    /// The widest skin a list is built with, as a multiple of its radius: particles that need more in
+    /// one substep have come loose, and listing all pairs of them would take the memory with it.
+    pub const WIDEST_SKIN: Real = 2.0;
+
+    fn capped(radius: Real, skin: Real) -> Real {
+        if skin <= Self::WIDEST_SKIN * radius { skin } else { Self::WIDEST_SKIN * radius }
+    }
+
+    /// The radius to order a grid by for [`build`](Self::build) [m].
+    pub fn list_radius(radius: Real, skin: Real) -> Real {
+        (radius + Self::capped(radius, skin)) * (1.0 + 8.0 * Real::EPSILON)
+    }
+
+    /// Lists all pairs that are within `radius` now and as long as [`covers`](Self::covers) holds. A
+    /// `skin` wider than [`WIDEST_SKIN`](Self::WIDEST_SKIN) is cut to that.
+    /// `grid` must have been ordered by `reference` for [`list_radius`](Self::list_radius), and
+    /// `reference` permuted by that order.
+    pub fn build(&mut self, grid: &Grid, reference: &[Vector], radius: Real, skin: Real, parallelism: Parallelism) {
+        let reference = &reference[..grid.rows()];
+        self.list.build(grid, reference, Self::list_radius(radius, skin), parallelism);
+        self.reference.clear();
+        self.reference.extend_from_slice(reference);
+        (self.radius, self.skin) = (radius, Self::capped(radius, skin));
+        self.builds += 1;
+    }
+
+    /// How the particles have moved since the list was built. `positions` may have more rows than the list.
+    pub fn motion(&self, grid: &Grid, positions: &[Vector], parallelism: Parallelism) -> Motion {
+        Motion::between(&self.reference, &positions[..self.reference.len()], grid, parallelism)
+    }
+
+    /// Whether the list holds every pair within the radius after this motion. Where pairs are
+    /// evaluated at two sets of positions, it must cover the motion to each.
+    pub fn covers(&self, motion: &Motion) -> bool {
+        self.builds > 0 && motion.needed_skin() <= self.skin
+    }
+
+    /// Whether a new list is due for `rows` rows at `positions`.
+    pub fn needs_rebuild(&self, grid: &Grid, positions: &[Vector], rows: usize, parallelism: Parallelism) -> bool {
+        self.reference.len() != rows || !self.covers(&self.motion(grid, positions, parallelism))
+    }
+
+    /// Visits every row that is within `radius` of `point` after `motion`, and some more: the caller
+    /// tests the distance. For points that are not in the list, such as smoke.
+    #[inline]
+    pub fn for_each_near(
+        &self,
+        grid: &Grid,
+        motion: &Motion,
+        point: Vector,
+        radius: Real,
+        mut visit: impl FnMut(usize),
+    ) {
+        let reach = radius + 0.5 * motion.needed_skin();
+        grid.for_each_run(point - motion.drift, reach, &mut Cursor::default(), |run| {
+            run.for_each(|row| visit(row as usize));
+        });
+    }
+
+    /// The list. Pairs up to radius + skin are in it.
+    #[inline]
+    pub fn list(&self) -> &NeighborList {
+        &self.list
+    }
+
+    /// The radius within which it is complete [m].
+    pub fn radius(&self) -> Real {
+        self.radius
+    }
+
+    /// The positions the list was built at.
+    pub fn reference(&self) -> &[Vector] {
+        &self.reference
+    }
+
+    /// The skin of the list [m].
+    pub fn skin(&self) -> Real {
+        self.skin
+    }
+
+    /// Lists built so far.
+    pub fn builds(&self) -> u64 {
+        self.builds
+    }
+
+    /// Forces a new list at the next [`needs_rebuild`](Self::needs_rebuild): rows were added, removed or permuted.
+    pub fn invalidate(&mut self) {
+        self.skin = -1.0;
+    }
+
+    /// Memory held [bytes].
+    pub fn memory_bytes(&self) -> usize {
+        self.list.memory_bytes() + self.reference.capacity() * size_of::<Vector>()
+    }
+}

@@ -1,0 +1,199 @@
+//! Loops over rows, on one thread or on all of a pool, with results that never depend on how many.
+//!
+//! Outputs are written in fixed chunks, and reductions follow a fixed binary tree of chunks, so
+//! that even floating-point sums come out the same on any number of threads.
+
+use crate::math::Real;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Rows one task works on: small enough to balance, large enough to hide the cost of a task.
+pub const CHUNK_ROWS: usize = 512;
+
+/// Below this many rows waking a pool costs more than it saves.
+pub const SERIAL_BELOW: usize = 4096;
+
+/// Whether loops may use a thread pool.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parallelism {
+    /// Everything on the calling thread.
+    Serial,
+    /// On the rayon pool the caller runs in.
+    Pool,
+}
+
+impl Parallelism {
+    /// Whether a loop over `rows` is worth spreading over the pool.
+    #[inline]
+    pub fn pays(self, rows: usize) -> bool {
+        self == Parallelism::Pool && rows >= SERIAL_BELOW && rayon::current_num_threads() > 1
+    }
+
+    /// `out[row] = value(row)`.
+    pub fn fill<T: Send>(self, out: &mut [T], value: impl Fn(usize) -> T + Sync) {
+        self.chunks(out, |first, chunk| {
+            for (k, slot) in chunk.iter_mut().enumerate() {
+                *slot = value(first + k);
+            }
+        });
+    }
+
+    /// `change(row, &mut out[row])`.
+    pub fn update<T: Send>(self, out: &mut [T], change: impl Fn(usize, &mut T) + Sync) {
+        self.chunks(out, |first, chunk| {
+            for (k, slot) in chunk.iter_mut().enumerate() {
+                change(first + k, slot);
+            }
+        });
+    }
+
+    /// `out[row] = source[order[row]]`.
+    pub fn gather<T: Copy + Send + Sync>(self, out: &mut [T], source: &[T], order: &[u32]) {
+        self.chunks(out, |first, chunk| {
+            let count = chunk.len();
+            for (slot, &from) in chunk.iter_mut().zip(&order[first..first + count]) {
+                *slot = source[from as usize];
+            }
+        });
+    }
+
+    /// Hands `out` out in chunks of [`CHUNK_ROWS`], each with the row it starts at.
+    pub fn chunks<T: Send>(self, out: &mut [T], work: impl Fn(usize, &mut [T]) + Sync) {
+        if self.pays(out.len()) {
+            out.par_chunks_mut(CHUNK_ROWS).enumerate().for_each(|(c, chunk)| work(c * CHUNK_ROWS, chunk));
+        } else {
+            out.chunks_mut(CHUNK_ROWS).enumerate().for_each(|(c, chunk)| work(c * CHUNK_ROWS, chunk));
+        }
+    }
+
+    /// As [`chunks`](Self::chunks), for two columns of equal length.
+    pub fn chunks2<A: Send, B: Send>(self, a: &mut [A], b: &mut [B], work: impl Fn(usize, &mut [A], &mut [B]) + Sync) {
+        assert_eq!(a.len(), b.len(), "columns of one particle set have one length");
+        if self.pays(a.len()) {
+            let pairs = a.par_chunks_mut(CHUNK_ROWS).zip(b.par_chunks_mut(CHUNK_ROWS));
+            pairs.enumerate().for_each(|(c, (a, b))| work(c * CHUNK_ROWS, a, b));
+        } else {
+            let pairs = a.chunks_mut(CHUNK_ROWS).zip(b.chunks_mut(CHUNK_ROWS));
+            pairs.enumerate().for_each(|(c, (a, b))| work(c * CHUNK_ROWS, a, b));
+        }
+    }
+
+    /// As [`chunks`](Self::chunks), for three columns of equal length.
+    pub fn chunks3<A: Send, B: Send, C: Send>(
+        self,
+        a: &mut [A],
+        b: &mut [B],
+        c: &mut [C],
+        work: impl Fn(usize, &mut [A], &mut [B], &mut [C]) + Sync,
+    ) {
+        assert!(a.len() == b.len() && b.len() == c.len(), "columns of one particle set have one length");
+        if self.pays(a.len()) {
+            let columns =
+                a.par_chunks_mut(CHUNK_ROWS).zip(b.par_chunks_mut(CHUNK_ROWS)).zip(c.par_chunks_mut(CHUNK_ROWS));
+            columns.enumerate().for_each(|(k, ((a, b), c))| work(k * CHUNK_ROWS, a, b, c));
+        } else {
+            let columns = a.chunks_mut(CHUNK_ROWS).zip(b.chunks_mut(CHUNK_ROWS)).zip(c.chunks_mut(CHUNK_ROWS));
+            columns.enumerate().for_each(|(k, ((a, b), c))| work(k * CHUNK_ROWS, a, b, c));
+        }
+    }
+
+    /// Runs `work` on each of a few large items (chunks of a list, bands of a sort) that stand for `rows` rows.
+    pub fn each<T: Send>(self, rows: usize, items: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
+        if self.pays(rows) {
+            items.par_iter_mut().enumerate().for_each(|(k, item)| work(k, item));
+        } else {
+            items.iter_mut().enumerate().for_each(|(k, item)| work(k, item));
+        }
+    }
+
+    /// Combines `leaf` over fixed chunks of `0..rows` along a fixed tree. `leaf(0..0)` must be the neutral element.
+    pub fn reduce<T: Send>(
+        self,
+        rows: usize,
+        leaf: impl Fn(Range<usize>) -> T + Sync,
+        combine: impl Fn(T, T) -> T + Sync,
+    ) -> T {
+        if self.pays(rows) { pool_tree(0..rows, &leaf, &combine) } else { serial_tree(0..rows, &leaf, &combine) }
+    }
+
+    /// Largest `value(row)`, or negative infinity without rows. NaN is passed over.
+    pub fn max(self, rows: usize, value: impl Fn(usize) -> Real + Sync) -> Real {
+        self.reduce(rows, |range| range.map(&value).fold(Real::NEG_INFINITY, Real::max), Real::max)
+    }
+
+    /// Sum of `value(row)` in double precision, in an order that depends on nothing but `rows`.
+    pub fn sum(self, rows: usize, value: impl Fn(usize) -> f64 + Sync) -> f64 {
+        self.reduce(rows, |range| range.map(&value).sum::<f64>(), |a, b| a + b)
+    }
+
+    /// Whether `test(row)` holds for every row.
+    pub fn all(self, rows: usize, test: impl Fn(usize) -> bool + Sync) -> bool {
+        self.reduce(rows, |mut range| range.all(&test), |a, b| a && b)
+    }
+}
+
+/// The middle of a range, on a chunk border; `None` when the range is a leaf.
+fn middle(range: &Range<usize>) -> Option<usize> {
+    let chunks = range.len().div_ceil(CHUNK_ROWS);
+    (chunks > 1).then(|| range.start + chunks.div_ceil(2) * CHUNK_ROWS)
+}
+
+fn serial_tree<T>(range: Range<usize>, leaf: &impl Fn(Range<usize>) -> T, combine: &impl Fn(T, T) -> T) -> T {
+    match middle(&range) {
+        None => leaf(range),
+        Some(mid) => {
+            let left = serial_tree(range.start..mid, leaf, combine);
+            combine(left, serial_tree(mid..range.end, leaf, combine))
+        }
+    }
+}
+
+fn pool_tree<T: Send>(
+    range: Range<usize>,
+    leaf: &(impl Fn(Range<usize>) -> T + Sync),
+    combine: &(impl Fn(T, T) -> T + Sync),
+) -> T {
+    match middle(&range) {
+        None => leaf(range),
+        Some(mid) => {
+            let (left, right) =
+                rayon::join(|| pool_tree(range.start..mid, leaf, combine), || pool_tree(mid..range.end, leaf, combine));
+            combine(left, right)
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn sums_have_the_same_bits_on_any_number_of_threads() {
+        let rows = 40_001;
+        let value = |row: usize| 1.0 / (1.0 + row as f64);
+        let serial = Parallelism::Serial.sum(rows, value);
+        assert!((serial - 11.174).abs() < 1e-3, "{serial}");
+        for threads in [1, 2, 3, 8] {
+            let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+            let sum = pool.install(|| Parallelism::Pool.sum(rows, value));
+            assert_eq!(sum.to_bits(), serial.to_bits());
+        }
+    }
+
+    #[test]
+    fn every_row_is_written_once_with_its_own_index() {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(3).build().unwrap();
+        for rows in [0, 1, 511, 512, 513, 4096, 10_007] {
+            let mut out = vec![0; rows];
+            pool.install(|| Parallelism::Pool.update(&mut out, |row, slot| *slot += row));
+            assert!(out.iter().enumerate().all(|(row, &value)| row == value));
+        }
+    }
+
+    #[test]
+    fn largest_value_passes_over_nan_and_knows_the_empty_set() {
+        let values = [1.0, Real::NAN, 3.0, 2.0];
+        assert_eq!(Parallelism::Serial.max(4, |row| values[row]), 3.0);
+        assert_eq!(Parallelism::Serial.max(0, |row| values[row]), Real::NEG_INFINITY);
+    }
+}
