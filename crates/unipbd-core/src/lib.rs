@@ -14,15 +14,25 @@
 //! ```
 
 pub mod bodies;
+mod build;
+pub mod constraints;
+pub mod effects;
+pub mod kernel;
 pub mod math;
 pub mod neighbors;
 pub mod observe;
 pub mod parallel;
 pub mod particles;
 pub mod phase;
+mod rng;
+pub mod rows;
 pub mod scene;
+mod sources;
+mod state;
 pub mod step;
+pub mod walls;
 
+pub use build::BuildOptions;
 pub use math::{Real, Vector, Vector64};
 pub use phase::{MaterialIndex, Phase};
-pub use step::{BuildOptions, FrameReport, Solver, SolverError};
+pub use step::{FrameReport, Solver, SolverError, Stage};

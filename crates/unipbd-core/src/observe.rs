@@ -67,6 +67,8 @@ pub struct MaterialDiagnostics {
     pub density_error_mean: f64,
     /// Largest C, as a fraction.
     pub density_error_max: f64,
+    /// Smallest C (dilation), as a fraction.
+    pub density_error_min: f64,
 }
 
 /// Diagnostics of one constraint group.

@@ -1,1 +1,309 @@
-//! Particles as columns.
+//! Particles as columns, one row each.
+//!
+//! Rows `[0, dense)` take part in the density and in neighbour lists (liquid, gas, rigid samples);
+//! rows `[dense, len)` are loose: smoke markers and free points. Rows are re-sorted as particles
+//! move, so a row number means nothing between two steps: the id does.
+
+use crate::math::{Real, Vector};
+use crate::parallel::Parallelism;
+use crate::phase::{MaterialIndex, Phase};
+
+/// Columns that not every scene has.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct OptionalColumns {
+    /// Temperature, for gas.
+    pub temperature: bool,
+    /// Age, for materials with a lifetime.
+    pub age: bool,
+}
+
+/// A particle about to be added.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct NewParticle {
+    /// Position [m].
+    pub position: Vector,
+    /// Velocity [m/s].
+    pub velocity: Vector,
+    /// Inverse mass [1/kg]; 0 for a particle moved by a script.
+    pub inverse_mass: Real,
+    /// Material.
+    pub material: MaterialIndex,
+    /// Phase of the material.
+    pub phase: Phase,
+    /// Temperature; dropped where the scene has none.
+    pub temperature: Real,
+}
+
+macro_rules! columns {
+    ($( $(#[$doc:meta])* $name:ident : $type:ty ),* $(,)?) => {
+        /// The particles of a run.
+        #[derive(Clone, Debug, Default)]
+        pub struct Particles {
+            $( $(#[$doc])* pub(crate) $name: Vec<$type>, )*
+            dense: usize,
+            next_id: u32,
+            optional: OptionalColumns,
+        }
+
+        impl Particles {
+            fn swap_rows(&mut self, a: usize, b: usize) {
+                $( if !self.$name.is_empty() { self.$name.swap(a, b); } )*
+            }
+
+            fn pop_row(&mut self) {
+                $( self.$name.pop(); )*
+            }
+
+            /// Brings the rows into a new order: row `i` becomes what stood in row `order[i]`.
+            pub(crate) fn reorder(&mut self, order: &[u32], parallelism: Parallelism, scratch: &mut Scratch) {
+                $( gather(&mut self.$name, order, parallelism, scratch.buffer()); )*
+            }
+
+            /// Memory held by the columns [bytes].
+            pub(crate) fn memory_bytes(&self) -> usize {
+                0 $( + self.$name.capacity() * size_of::<$type>() )*
+            }
+        }
+    };
+}
+
+columns! {
+    /// Position x; during a substep the predicted and projected one [m].
+    position: Vector,
+    /// Position at the start of the substep, x_n [m].
+    start: Vector,
+    /// Displacement since the start of the substep, u [m]; for smoke the velocity one substep ago [m/s].
+    displacement: Vector,
+    /// Part of the displacement that rounding kept out of the position [m].
+    remainder: Vector,
+    /// Velocity [m/s].
+    velocity: Vector,
+    /// Inverse mass [1/kg]; 0 for particles moved by a script.
+    inverse_mass: Real,
+    /// Density error C of the last substep.
+    density_error: Real,
+    /// Density multiplier of the last substep [kg m^2].
+    multiplier: Real,
+    /// Stable id, never reused within a run.
+    id: u32,
+    /// Material.
+    material: MaterialIndex,
+    /// Phase.
+    phase: Phase,
+    /// Temperature (optional column).
+    temperature: Real,
+    /// Time since the particle was added [s] (optional column).
+    age: Real,
+}
+
+impl Particles {
+    /// An empty set with these optional columns.
+    pub(crate) fn new(optional: OptionalColumns) -> Self {
+        Particles { optional, ..Particles::default() }
+    }
+
+    /// Number of particles.
+    pub fn len(&self) -> usize {
+        self.position.len()
+    }
+
+    /// Whether there are none.
+    pub fn is_empty(&self) -> bool {
+        self.position.is_empty()
+    }
+
+    /// Rows that take part in the density.
+    pub fn dense(&self) -> usize {
+        self.dense
+    }
+
+    /// Number of ids given so far: every id is below it.
+    pub fn ids_given(&self) -> u32 {
+        self.next_id
+    }
+
+    /// Positions [m].
+    pub fn positions(&self) -> &[Vector] {
+        &self.position
+    }
+
+    /// Positions at the start of the substep [m].
+    pub fn starts(&self) -> &[Vector] {
+        &self.start
+    }
+
+    /// Velocities [m/s].
+    pub fn velocities(&self) -> &[Vector] {
+        &self.velocity
+    }
+
+    /// Inverse masses [1/kg]; 0 for particles moved by a script.
+    pub fn inverse_masses(&self) -> &[Real] {
+        &self.inverse_mass
+    }
+
+    /// Stable ids.
+    pub fn ids(&self) -> &[u32] {
+        &self.id
+    }
+
+    /// Phases.
+    pub fn phases(&self) -> &[Phase] {
+        &self.phase
+    }
+
+    /// Materials.
+    pub fn materials(&self) -> &[MaterialIndex] {
+        &self.material
+    }
+
+    /// Temperatures; empty where the scene has none.
+    pub fn temperatures(&self) -> &[Real] {
+        &self.temperature
+    }
+
+    /// Density errors C = rho/rho0 - 1 of the last substep, 0 for rows without a density constraint.
+    pub fn density_errors(&self) -> &[Real] {
+        &self.density_error
+    }
+
+    /// Adds a particle and returns its id.
+    pub(crate) fn push(&mut self, new: NewParticle) -> u32 {
+        let id = self.next_id;
+        self.next_id += 1;
+        self.position.push(new.position);
+        self.start.push(new.position);
+        self.displacement.push(if new.phase.is_passive() { new.velocity } else { Vector::ZERO });
+        self.remainder.push(Vector::ZERO);
+        self.velocity.push(new.velocity);
+        self.inverse_mass.push(new.inverse_mass);
+        self.density_error.push(0.0);
+        self.multiplier.push(0.0);
+        self.id.push(id);
+        self.material.push(new.material);
+        self.phase.push(new.phase);
+        if self.optional.temperature {
+            self.temperature.push(new.temperature);
+        }
+        if self.optional.age {
+            self.age.push(0.0);
+        }
+        if new.phase.is_dense() {
+            let last = self.len() - 1;
+            self.swap_rows(self.dense, last);
+            self.dense += 1;
+        }
+        id
+    }
+
+    /// Removes rows, given in ascending order; the rows behind them fill the holes.
+    pub(crate) fn remove_rows(&mut self, rows: &[u32]) {
+        for &row in rows.iter().rev() {
+            let mut hole = row as usize;
+            if hole < self.dense {
+                self.dense -= 1;
+                self.swap_rows(hole, self.dense);
+                hole = self.dense;
+            }
+            let last = self.len() - 1;
+            self.swap_rows(hole, last);
+            self.pop_row();
+        }
+    }
+}
+
+/// Buffers for reordering columns, one for each element size.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Scratch {
+    vectors: Vec<Vector>,
+    reals: Vec<Real>,
+    ids: Vec<u32>,
+    materials: Vec<MaterialIndex>,
+    phases: Vec<Phase>,
+}
+
+/// Finds the buffer of an element type.
+pub(crate) trait Buffer<T> {
+    fn buffer(&mut self) -> &mut Vec<T>;
+}
+
+macro_rules! buffers {
+    ($($type:ty => $field:ident),*) => {
+        $( impl Buffer<$type> for Scratch {
+            fn buffer(&mut self) -> &mut Vec<$type> { &mut self.$field }
+        } )*
+    };
+}
+buffers!(Vector => vectors, Real => reals, u32 => ids, MaterialIndex => materials, Phase => phases);
+
+fn gather<T: Copy + Send + Sync>(column: &mut Vec<T>, order: &[u32], parallelism: Parallelism, buffer: &mut Vec<T>) {
+    if column.is_empty() {
+        return;
+    }
+    // Both buffers grow with the column, so a steady step allocates nothing.
+    buffer.reserve(column.capacity().saturating_sub(buffer.len()));
+    buffer.clear();
+    buffer.extend_from_slice(column);
+    parallelism.gather(column, buffer, order);
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn particle(phase: Phase, x: Real) -> NewParticle {
+        NewParticle {
+            position: Vector::new(x, 0.0),
+            velocity: Vector::ZERO,
+            inverse_mass: 1.0,
+            material: 0,
+            phase,
+            temperature: 0.0,
+        }
+    }
+
+    fn mixed(count: u32) -> Particles {
+        let mut particles = Particles::new(OptionalColumns { temperature: true, age: false });
+        for i in 0..count {
+            let phase = if i % 3 == 0 { Phase::Smoke } else { Phase::Gas };
+            particles.push(particle(phase, i as Real));
+        }
+        particles
+    }
+
+    fn assert_consistent(particles: &Particles) {
+        for row in 0..particles.len() {
+            assert_eq!(particles.phase[row].is_dense(), row < particles.dense());
+            assert_eq!(particles.position[row].x, particles.id[row] as Real);
+        }
+        assert_eq!(particles.temperature.len(), particles.len());
+        assert!(particles.age.is_empty());
+    }
+
+    #[test]
+    fn dense_rows_come_first_whatever_the_order_of_adding() {
+        assert_consistent(&mixed(20));
+    }
+
+    #[test]
+    fn removal_keeps_rows_and_ids_together() {
+        let mut particles = mixed(20);
+        particles.remove_rows(&[0, 3, 12, 13, 18, 19]);
+        assert_eq!(particles.len(), 14);
+        assert_consistent(&particles);
+        let fresh = particles.push(particle(Phase::Gas, 20.0));
+        assert_eq!(fresh, 20, "ids are never reused");
+        assert_consistent(&particles);
+    }
+
+    #[test]
+    fn reordering_moves_whole_rows() {
+        let mut particles = mixed(9);
+        let (dense, len) = (particles.dense() as u32, particles.len() as u32);
+        let order: Vec<u32> = (0..dense).rev().chain((dense..len).rev()).collect();
+        let before = particles.id.clone();
+        particles.reorder(&order, Parallelism::Serial, &mut Scratch::default());
+        assert_eq!(particles.id[0], before[dense as usize - 1]);
+        assert_consistent(&particles);
+    }
+}

@@ -42,6 +42,11 @@ impl Phase {
         matches!(self, Phase::Smoke)
     }
 
+    /// Whether particles of this phase are counted in the density of the fluid around them.
+    pub const fn is_dense(self) -> bool {
+        matches!(self, Phase::Liquid | Phase::Gas | Phase::Rigid)
+    }
+
     /// Whether particles of this phase carry a density constraint of their own.
     pub const fn is_fluid(self) -> bool {
         matches!(self, Phase::Liquid | Phase::Gas)

@@ -12,10 +12,12 @@ mod grid;
 mod list;
 mod order;
 mod periodic;
+mod search;
 mod skin;
 mod sparse;
 
 pub use grid::{Cursor, Grid};
 pub use list::{Block, Chunk, Entries, LANES, NeighborList};
 pub use periodic::{Periodic, PeriodicAxis};
+pub use search::{Cover, Neighbors, Prepared};
 pub use skin::{Motion, SkinList};

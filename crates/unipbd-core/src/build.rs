@@ -1,0 +1,213 @@
+//! From a scene to a running solver: the only place that names concrete groups and effects.
+
+use crate::constraints::{ConstraintGroup, Density, DensitySettings};
+use crate::effects::{Conduction, Drag, Effect, SmokeAdvection, Viscosity, VorticityConfinement};
+use crate::math::{Vector, Vector64, real, vector};
+use crate::neighbors::{Cover, Neighbors, Periodic, PeriodicAxis};
+use crate::observe::Material;
+use crate::parallel::Parallelism;
+use crate::particles::{NewParticle, OptionalColumns, Particles};
+use crate::phase::{MaterialIndex, Phase};
+use crate::rng::Rng;
+use crate::scene::{GradientPoint, MaterialRef, Problems, Scene, block_points, disc_points};
+use crate::sources::{EmitterSystem, RemovalRules};
+use crate::step::{BodyForce, Parts, Solver, SubstepRule};
+use crate::walls::Walls;
+
+/// Skin, in spacings, that covers what the projection moves, so that velocity passes find their pairs.
+const LEAST_SKIN: f64 = 0.05;
+/// Streams of random numbers, far apart for different purposes.
+const BLOCK_STREAM: u64 = 1 << 32;
+const DISC_STREAM: u64 = 2 << 32;
+const WIND_STREAM: u64 = 3 << 32;
+
+/// How a scene is built.
+#[derive(Clone, Debug, Default)]
+pub struct BuildOptions {
+    /// Threads to use; left out, all the machine has. Never changes results.
+    pub threads: Option<usize>,
+    /// Replaces the seed of the scene.
+    pub seed: Option<u64>,
+}
+
+impl Scene {
+    /// Builds a solver and settles its start.
+    ///
+    /// # Errors
+    /// All [`Problems`] of a faulty scene.
+    pub fn build(&self, options: BuildOptions) -> Result<Solver, Problems> {
+        let problems = self.validate();
+        if !problems.0.is_empty() {
+            return Err(problems);
+        }
+        let seed = options.seed.unwrap_or(self.seed);
+        let threads = options.threads.unwrap_or_else(available_threads);
+        let mut solver = Solver::new(parts(self, seed), threads);
+        solver.settle(self.solver.settle_substeps);
+        Ok(solver)
+    }
+}
+
+fn available_threads() -> usize {
+    std::thread::available_parallelism().map_or(1, usize::from)
+}
+
+fn parts(scene: &Scene, seed: u64) -> Parts {
+    let periodic = periodic(scene);
+    let settings = DensitySettings::new(scene);
+    let effects = effects(scene, seed);
+    let cover = match settings.gradients {
+        GradientPoint::Start => Cover::StartAndPredicted,
+        GradientPoint::Predicted => Cover::Predicted,
+    };
+    let least_skin = if effects.is_empty() && scene.smoke.is_empty() { 0.0 } else { LEAST_SKIN * scene.spacing };
+    let removal = RemovalRules::new(scene, periodic);
+    let optional = OptionalColumns {
+        temperature: !scene.gas.is_empty(),
+        age: removal.as_ref().is_some_and(RemovalRules::needs_age),
+    };
+    Parts {
+        particles: particles(scene, seed, optional),
+        materials: scene.materials().enumerate().map(|(index, material)| shown(material, index)).collect(),
+        forces: scene.materials().map(|material| body_force(material, scene)).collect(),
+        walls: Walls::new(scene),
+        neighbors: Neighbors::new(periodic, real(settings.kernel_radius), real(least_skin)),
+        cover,
+        groups: groups(scene, settings),
+        effects,
+        smoke: (!scene.smoke.is_empty()).then(|| SmokeAdvection::new(scene)),
+        emitters: (!scene.emitter.is_empty()).then(|| EmitterSystem::new(scene, seed)),
+        removal,
+        substeps: SubstepRule::new(scene),
+        iterations: scene.solver.iterations,
+        gravity: vector(scene.gravity.into()),
+        spacing: scene.spacing,
+        frame_time: 1.0 / scene.fps,
+        seed,
+        parallelism: Parallelism::Serial,
+    }
+}
+
+fn groups(scene: &Scene, density: DensitySettings) -> Vec<Box<dyn ConstraintGroup>> {
+    let mut groups: Vec<Box<dyn ConstraintGroup>> = Vec::new();
+    if scene.materials().any(|material| material.phase().is_fluid()) {
+        groups.push(Box::new(Density::new(density)));
+    }
+    groups
+}
+
+fn effects(scene: &Scene, seed: u64) -> Vec<Box<dyn Effect>> {
+    let mut effects: Vec<Box<dyn Effect>> = Vec::new();
+    if let Some(viscosity) = Viscosity::new(scene) {
+        effects.push(Box::new(viscosity));
+    }
+    if let Some(drag) = Drag::new(scene, Rng::new(seed, WIND_STREAM).state()) {
+        effects.push(Box::new(drag));
+    }
+    if let Some(conduction) = Conduction::new(scene) {
+        effects.push(Box::new(conduction));
+    }
+    if let Some(confinement) = VorticityConfinement::new(scene) {
+        effects.push(Box::new(confinement));
+    }
+    effects
+}
+
+fn periodic(scene: &Scene) -> Periodic {
+    let axis =
+        |range: Option<[f64; 2]>| range.map(|[from, to]| PeriodicAxis { from: real(from), length: real(to - from) });
+    Periodic { x: axis(scene.domain.periodic_x), y: axis(scene.domain.periodic_y) }
+}
+
+fn body_force(material: MaterialRef<'_>, scene: &Scene) -> BodyForce {
+    let gravity = Vector64::from(scene.gravity);
+    match material {
+        MaterialRef::Liquid(liquid) => {
+            BodyForce { acceleration: vector(gravity * liquid.gravity_factor), thermal: false }
+        }
+        MaterialRef::Gas(gas) => BodyForce { acceleration: vector(gravity * gas.gravity_factor), thermal: true },
+        MaterialRef::Smoke(_) => BodyForce { acceleration: Vector::ZERO, thermal: false },
+    }
+}
+
+/// What the start of a scene is filled with.
+struct Filling<'a> {
+    material: &'a str,
+    points: Vec<Vector64>,
+    velocity: [f64; 2],
+    jitter: f64,
+    temperature: f64,
+    stream: u64,
+}
+
+fn particles(scene: &Scene, seed: u64, optional: OptionalColumns) -> Particles {
+    let mut particles = Particles::new(optional);
+    for (number, block) in scene.block.iter().enumerate() {
+        let filling = Filling {
+            material: &block.material,
+            points: block_points(block, scene.spacing),
+            velocity: block.velocity,
+            jitter: block.jitter,
+            temperature: block.temperature,
+            stream: BLOCK_STREAM + number as u64,
+        };
+        filling.pour(scene, seed, &mut particles);
+    }
+    for (number, disc) in scene.disc.iter().enumerate() {
+        let filling = Filling {
+            material: &disc.material,
+            points: disc_points(disc, scene.spacing),
+            velocity: disc.velocity,
+            jitter: disc.jitter,
+            temperature: disc.temperature,
+            stream: DISC_STREAM + number as u64,
+        };
+        filling.pour(scene, seed, &mut particles);
+    }
+    particles
+}
+
+impl Filling<'_> {
+    fn pour(&self, scene: &Scene, seed: u64, particles: &mut Particles) {
+        let Some((index, material)) = scene.material(self.material) else { return };
+        let mut rng = Rng::new(seed, self.stream);
+        let mass = material.density() * scene.spacing * scene.spacing;
+        for &point in &self.points {
+            let shift = Vector64::new(rng.signed_unit(), rng.signed_unit()) * (self.jitter * scene.spacing);
+            particles.push(NewParticle {
+                position: vector(point + shift),
+                velocity: vector(self.velocity.into()),
+                inverse_mass: real(1.0 / mass),
+                material: index as MaterialIndex,
+                phase: material.phase(),
+                temperature: real(self.temperature),
+            });
+        }
+    }
+}
+
+/// Colours of materials that name none, by phase and number.
+fn shown(material: MaterialRef<'_>, index: usize) -> Material {
+    const LIQUIDS: [[u8; 3]; 4] = [[58, 134, 222], [231, 111, 81], [42, 157, 143], [233, 196, 106]];
+    const GASES: [[u8; 3]; 2] = [[124, 152, 179], [179, 146, 172]];
+    const SMOKES: [[u8; 3]; 2] = [[232, 236, 241], [244, 190, 140]];
+    let default = match material.phase() {
+        Phase::Gas => GASES[index % GASES.len()],
+        Phase::Smoke => SMOKES[index % SMOKES.len()],
+        _ => LIQUIDS[index % LIQUIDS.len()],
+    };
+    Material {
+        name: material.name().to_owned(),
+        phase: material.phase(),
+        density: material.density(),
+        color: material.color().and_then(parse_color).unwrap_or(default),
+    }
+}
+
+/// `"#rrggbb"` as red, green, blue.
+fn parse_color(text: &str) -> Option<[u8; 3]> {
+    let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6)?;
+    let value = u32::from_str_radix(digits, 16).ok()?;
+    let [_, red, green, blue] = value.to_be_bytes();
+    Some([red, green, blue])
+}

@@ -1,0 +1,122 @@
+//! Constraint groups: what holds particles together.
+//!
+//! A group solves all its constraints from one state and adds what it wants to move to
+//! [`Corrections`]; the loop applies them and goes on to the next group. Groups are open: implement
+//! [`ConstraintGroup`] anywhere and hand it to [`Solver::add_group`](crate::Solver::add_group), or
+//! implement [`Constraint`] and let [`Batch`] do the rest.
+
+mod batch;
+mod corrections;
+mod density;
+mod projection;
+
+use std::ops::BitOr;
+
+pub use batch::{Batch, Constraint};
+pub use corrections::Corrections;
+pub use density::{Density, DensityMaterial, DensitySettings};
+
+use crate::math::{Real, Vector};
+use crate::neighbors::Neighbors;
+use crate::parallel::Parallelism;
+use crate::particles::Particles;
+use crate::rows::RowIndex;
+use crate::walls::Walls;
+
+/// What a group needs from the loop; what nobody needs is not computed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Needs(u8);
+
+impl Needs {
+    /// Nothing beyond the particles.
+    pub const NOTHING: Needs = Needs(0);
+    /// The neighbour list of the dense particles.
+    pub const NEIGHBORS: Needs = Needs(1);
+    /// The row of a particle by its id.
+    pub const ROWS: Needs = Needs(2);
+    /// A call of [`ConstraintGroup::finish_velocities`].
+    pub const VELOCITY_PASS: Needs = Needs(4);
+
+    /// Whether all of `other` is needed.
+    pub const fn contains(self, other: Needs) -> bool {
+        self.0 & other.0 == other.0
+    }
+}
+
+impl BitOr for Needs {
+    type Output = Needs;
+    fn bitor(self, other: Needs) -> Needs {
+        Needs(self.0 | other.0)
+    }
+}
+
+/// One substep as groups and effects see it.
+#[derive(Clone, Copy)]
+pub struct Substep<'a> {
+    /// Length of the substep [s].
+    pub dt: Real,
+    /// Simulated time at the start of the substep [s].
+    pub time: f64,
+    /// The particles, at their predicted or projected positions.
+    pub particles: &'a Particles,
+    /// Rows by id; kept only where a group [needs](Needs::ROWS) it.
+    pub rows: &'a RowIndex,
+    /// Neighbours of the dense rows; built only where a group [needs](Needs::NEIGHBORS) it.
+    pub neighbors: &'a Neighbors,
+    /// Static walls.
+    pub walls: &'a Walls,
+    /// How to spread work over threads.
+    pub parallelism: Parallelism,
+}
+
+/// A batch of constraints that are solved together.
+pub trait ConstraintGroup: Send + Sync {
+    /// The name under which the group is timed and logged.
+    fn name(&self) -> &str;
+
+    /// What the group needs from the loop.
+    fn needs(&self) -> Needs;
+
+    /// Called once per substep, after prediction and neighbour search.
+    fn begin_substep(&mut self, now: Substep<'_>) {
+        let _ = now;
+    }
+
+    /// One iteration: adds the wanted displacements of rows to `out`.
+    fn project(&mut self, now: Substep<'_>, out: &mut Corrections);
+
+    /// Changes velocities after they were updated from the displacements (with
+    /// [`Needs::VELOCITY_PASS`]).
+    fn finish_velocities(&mut self, now: Substep<'_>, velocities: &mut [Vector]) {
+        let _ = (now, velocities);
+    }
+
+    /// Largest violation after the last projection, in the group's own unit.
+    fn violation(&self) -> Option<f64> {
+        None
+    }
+
+    /// Density errors and multipliers by row, where this is the density group.
+    fn density(&self) -> Option<DensityColumns<'_>> {
+        None
+    }
+
+    /// What a saved state must hold beside the particles: words that [`restore`](Self::restore) takes.
+    fn save(&self) -> Vec<u64> {
+        Vec::new()
+    }
+
+    /// Takes back what [`save`](Self::save) gave.
+    fn restore(&mut self, saved: &[u64]) {
+        let _ = saved;
+    }
+}
+
+/// What a density group knows of each row after its last projection.
+#[derive(Clone, Copy, Debug)]
+pub struct DensityColumns<'a> {
+    /// C = rho/rho0 - 1.
+    pub error: &'a [Real],
+    /// Lagrange multipliers [kg m^2].
+    pub multiplier: &'a [Real],
+}

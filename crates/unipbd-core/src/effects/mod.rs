@@ -1,0 +1,67 @@
+//! Velocity passes after the projection: viscosity, drag, vorticity confinement, heat, and the
+//! advection of smoke. None of them moves a constrained particle.
+
+mod conduction;
+mod confinement;
+mod drag;
+mod smoke;
+mod viscosity;
+mod wind;
+
+pub use conduction::Conduction;
+pub use confinement::VorticityConfinement;
+pub use drag::Drag;
+pub use smoke::SmokeAdvection;
+pub use viscosity::Viscosity;
+pub use wind::Wind;
+
+use crate::constraints::{Needs, Substep};
+use crate::math::{Real, Vector};
+use crate::scene::{Gas, MaterialRef, Scene};
+
+/// A pass over the velocities (and temperatures) at the end of a substep.
+pub trait Effect: Send + Sync {
+    /// The name under which the effect is timed.
+    fn name(&self) -> &'static str;
+
+    /// What the effect needs from the loop.
+    fn needs(&self) -> Needs {
+        Needs::NEIGHBORS
+    }
+
+    /// Adds to `out` what is to change; the loop applies it to all rows but those moved by a script.
+    fn apply(&mut self, now: Substep<'_>, out: &mut Changes);
+}
+
+/// Changes of the dense rows, zero unless an effect adds to them.
+#[derive(Clone, Debug, Default)]
+pub struct Changes {
+    /// Change of velocity [m/s].
+    pub velocity: Vec<Vector>,
+    /// Change of temperature; empty in a scene without temperatures.
+    pub temperature: Vec<Real>,
+}
+
+impl Changes {
+    /// Back to zero for this many dense rows.
+    pub(crate) fn reset(&mut self, rows: usize, temperatures: bool) {
+        self.velocity.clear();
+        self.velocity.resize(rows, Vector::ZERO);
+        self.temperature.clear();
+        self.temperature.resize(if temperatures { rows } else { 0 }, 0.0);
+    }
+}
+
+/// One number per material, taken from the gases; 0 for all others.
+fn per_gas(scene: &Scene, value: impl Fn(&Gas) -> f64) -> Vec<Real> {
+    let of = |material: MaterialRef<'_>| match material {
+        MaterialRef::Gas(gas) => value(gas) as Real,
+        _ => 0.0,
+    };
+    scene.materials().map(of).collect()
+}
+
+/// Whether any material has the property.
+fn any(values: &[Real]) -> bool {
+    values.iter().any(|&value| value != 0.0)
+}

@@ -1,0 +1,180 @@
+//! The neighbour search of a run: grid, list and skin, kept valid while particles move.
+
+use super::{Grid, Motion, NeighborList, Periodic, SkinList};
+use crate::math::{Real, Vector};
+use crate::parallel::Parallelism;
+use crate::particles::{Particles, Scratch};
+
+/// Cost of a list build over that of the passes of one substep (measured, order of magnitude): decides
+/// for how many substeps a list should last.
+const BUILD_COST: Real = 0.6;
+/// Longest skin, as a part of the kernel radius: beyond it the passes see too many distant pairs.
+const LONGEST_SKIN: Real = 0.2;
+
+/// For which positions a list must hold.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Cover {
+    /// The predicted ones only.
+    Predicted,
+    /// Those at the start of the substep too.
+    StartAndPredicted,
+}
+
+/// Whether [`Neighbors::prepare`] made a new list, and so a new row order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Prepared {
+    /// The old list still holds.
+    Kept,
+    /// Rows were re-sorted and listed anew.
+    Rebuilt,
+}
+
+/// Neighbours of the dense particles.
+pub struct Neighbors {
+    grid: Grid,
+    list: SkinList,
+    motion: Motion,
+    radius: Real,
+    /// Skin kept for the small moves of the projection, so that velocity passes find their pairs.
+    least_skin: Real,
+    reference: Vec<Vector>,
+    scratch: Scratch,
+}
+
+impl Neighbors {
+    /// A search for pairs within `radius` [m].
+    pub fn new(periodic: Periodic, radius: Real, least_skin: Real) -> Self {
+        Neighbors {
+            grid: Grid::new(periodic),
+            list: SkinList::default(),
+            motion: Motion::default(),
+            radius,
+            least_skin,
+            reference: Vec::new(),
+            scratch: Scratch::default(),
+        }
+    }
+
+    /// Which axes repeat.
+    pub fn periodic(&self) -> Periodic {
+        self.grid.periodic()
+    }
+
+    /// The list: all pairs within the radius, and some more.
+    pub fn list(&self) -> &NeighborList {
+        self.list.list()
+    }
+
+    /// Visits the neighbours of a dense row, and some rows beyond the radius.
+    #[inline]
+    pub fn for_each(&self, row: usize, visit: impl FnMut(usize)) {
+        self.list.list().for_each(row, visit);
+    }
+
+    /// Visits every dense row within `radius` of any point, and some more.
+    #[inline]
+    pub fn for_each_near(&self, point: Vector, radius: Real, visit: impl FnMut(usize)) {
+        self.list.for_each_near(&self.grid, &self.motion, point, radius, visit);
+    }
+
+    /// Lists built so far.
+    pub fn builds(&self) -> u64 {
+        self.list.builds()
+    }
+
+    /// The next [`prepare`](Self::prepare) makes a new list: rows were added or removed.
+    pub fn invalidate(&mut self) {
+        self.list.invalidate();
+    }
+
+    /// Makes sure the list holds every pair for the positions to cover; re-sorts all rows if it must
+    /// be made anew.
+    pub fn prepare(&mut self, particles: &mut Particles, cover: Cover, parallelism: Parallelism) -> Prepared {
+        if self.holds(particles, cover, parallelism) {
+            return Prepared::Kept;
+        }
+        self.rebuild(particles, cover, parallelism);
+        Prepared::Rebuilt
+    }
+
+    fn holds(&mut self, particles: &Particles, cover: Cover, parallelism: Parallelism) -> bool {
+        let rows = particles.dense();
+        if self.list.reference().len() != rows || self.list.skin() < 0.0 {
+            return false;
+        }
+        self.motion = self.list.motion(&self.grid, particles.positions(), parallelism);
+        if !self.list.covers(&self.motion) {
+            return false;
+        }
+        cover == Cover::Predicted || {
+            let motion = self.list.motion(&self.grid, particles.starts(), parallelism);
+            self.list.covers(&motion)
+        }
+    }
+
+    fn rebuild(&mut self, particles: &mut Particles, cover: Cover, parallelism: Parallelism) {
+        let rows = particles.dense();
+        let (start, end) = (&particles.starts()[..rows], &particles.positions()[..rows]);
+        let step = Motion::between(start, end, &self.grid, parallelism).needed_skin();
+        let skin = self.skin(step, cover);
+        self.set_reference(particles, cover, parallelism);
+        // Smoke follows the dense rows only to stay near them in memory.
+        let radius = SkinList::list_radius(self.radius, skin);
+        self.grid.order(&self.reference, rows, radius, parallelism);
+        particles.reorder(self.grid.last_order(), parallelism, &mut self.scratch);
+        self.set_reference(particles, cover, parallelism);
+        self.list.build(&self.grid, &self.reference, self.radius, skin, parallelism);
+        self.motion = self.list.motion(&self.grid, particles.positions(), parallelism);
+    }
+
+    /// The cheapest skin for particles that come nearer by up to `step` per substep: a list that lasts
+    /// k substeps costs a build/k and passes over (h + k step)^2 pairs.
+    fn skin(&self, step: Real, cover: Cover) -> Real {
+        let lasting = (BUILD_COST * self.radius / step.max(1e-6 * self.radius)).sqrt().floor();
+        let longest = LONGEST_SKIN * self.radius;
+        let wanted = if lasting < 2.0 { 0.0 } else { (lasting * step).min(longest) };
+        // From the middle of the substep both its ends are half a step away.
+        let needed = if cover == Cover::StartAndPredicted { 0.5 * step * 1.001 } else { 0.0 };
+        wanted.max(self.least_skin).max(needed)
+    }
+
+    fn set_reference(&mut self, particles: &Particles, cover: Cover, parallelism: Parallelism) {
+        let (start, end) = (particles.starts(), particles.positions());
+        let periodic = self.grid.periodic();
+        self.reference.resize(end.len(), Vector::ZERO);
+        match cover {
+            Cover::Predicted => self.reference.copy_from_slice(end),
+            Cover::StartAndPredicted => parallelism.fill(&mut self.reference, |row| {
+                let middle = start[row] + 0.5 * periodic.min_image(end[row] - start[row]);
+                periodic.wrap(middle)
+            }),
+        }
+    }
+
+    /// What a saved state needs to make the same list again: reference positions and skin.
+    pub(crate) fn saved(&self) -> (&[Vector], Real) {
+        (self.list.reference(), self.list.skin())
+    }
+
+    /// Makes the list of a saved state again; rows already stand in its order.
+    pub(crate) fn restore(
+        &mut self,
+        particles: &Particles,
+        reference: &[Vector],
+        skin: Real,
+        parallelism: Parallelism,
+    ) {
+        if reference.len() != particles.dense() || skin < 0.0 {
+            self.invalidate();
+            return;
+        }
+        self.grid.order(reference, reference.len(), SkinList::list_radius(self.radius, skin), parallelism);
+        self.list.build(&self.grid, reference, self.radius, skin, parallelism);
+        self.motion = self.list.motion(&self.grid, particles.positions(), parallelism);
+    }
+
+    /// Memory held [bytes].
+    pub fn memory_bytes(&self) -> usize {
+        self.grid.memory_bytes() + self.list.memory_bytes() + self.reference.capacity() * size_of::<Vector>()
+    }
+}

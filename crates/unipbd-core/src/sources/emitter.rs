@@ -1,0 +1,350 @@
+//! Emitters: rows of particles behind a face are pushed across it and let go.
+//!
+//! Behind each column of the face stand three particles moved by the emitter. They make the fluid
+//! in front see a full neighbourhood; the first to cross the face is let go, and a new one is added
+//! three spacings behind. (Points set free at random press on each other ten times harder.)
+
+use crate::math::{Real, Vector, Vector64, real, vector};
+use crate::neighbors::Neighbors;
+use crate::particles::{NewParticle, Particles};
+use crate::phase::{MaterialIndex, Phase};
+use crate::rng::Rng;
+use crate::rows::RowIndex;
+use crate::scene::{Emitter, Profile, Scene};
+
+/// Particles kept behind the face in each column.
+const ROWS_BEHIND: usize = 3;
+/// Mean compression ahead of the face at which the throttle begins to close.
+const THROTTLE_COMPRESSION: f64 = 0.02;
+
+/// All emitters of a scene.
+pub struct EmitterSystem {
+    emitters: Vec<Nozzle>,
+}
+
+/// What changes in an emitter while it runs: part of a saved state.
+#[derive(Clone, Debug, PartialEq)]
+pub struct EmitterState {
+    rng: u64,
+    running: bool,
+    throttle: f64,
+    columns: Vec<ColumnState>,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+struct ColumnState {
+    /// Way since the last particle crossed the face, in spacings [0, 1).
+    progress: f64,
+    /// Ids of the particles behind the face, the nearest first.
+    behind: [u32; ROWS_BEHIND],
+}
+
+struct Nozzle {
+    position: Vector64,
+    direction: Vector64,
+    spacing: f64,
+    jitter: f64,
+    start: f64,
+    stop: f64,
+    throttled: bool,
+    carrier: Carrier,
+    smoke: Option<Markers>,
+    columns: Vec<Column>,
+    state: EmitterState,
+}
+
+struct Carrier {
+    material: MaterialIndex,
+    phase: Phase,
+    inverse_mass: Real,
+}
+
+struct Markers {
+    material: MaterialIndex,
+    per_particle: u32,
+}
+
+/// One column of the face.
+struct Column {
+    /// Distance from the middle of the face [m].
+    offset: f64,
+    speed: f64,
+    temperature: Real,
+    core: bool,
+}
+
+impl EmitterSystem {
+    /// The emitters of a scene.
+    pub fn new(scene: &Scene, seed: u64) -> Self {
+        let nozzle = |(number, emitter)| Nozzle::new(emitter, scene, Rng::new(seed, number as u64));
+        EmitterSystem { emitters: scene.emitter.iter().enumerate().map(nozzle).collect() }
+    }
+
+    /// Fastest speed at which any emitter pushes at this time [m/s].
+    pub fn speed_max(&self, time: f64) -> f64 {
+        let active = self.emitters.iter().filter(|nozzle| nozzle.is_active(time));
+        active.flat_map(|nozzle| &nozzle.columns).map(|column| column.speed).fold(0.0, f64::max)
+    }
+
+    /// Moves all emitters on by `dt` from `time`: lets particles go, adds new ones, sets the speed of
+    /// those behind the face. Returns how many were added.
+    pub fn advance(
+        &mut self,
+        time: f64,
+        dt: f64,
+        particles: &mut Particles,
+        rows: &RowIndex,
+        neighbors: &Neighbors,
+    ) -> u64 {
+        let before = particles.ids_given();
+        for nozzle in &mut self.emitters {
+            nozzle.advance(time, dt, particles, rows, neighbors);
+        }
+        u64::from(particles.ids_given() - before)
+    }
+
+    /// Whether the next [`advance`](Self::advance) by `dt` adds particles or lets some go.
+    pub fn will_change(&self, time: f64, dt: f64) -> bool {
+        self.emitters.iter().any(|nozzle| nozzle.will_change(time, dt))
+    }
+
+    /// The changing part of each emitter.
+    pub fn states(&self) -> impl Iterator<Item = &EmitterState> {
+        self.emitters.iter().map(|nozzle| &nozzle.state)
+    }
+
+    /// Takes back what [`states`](Self::states) gave.
+    pub fn restore(&mut self, states: &[EmitterState]) {
+        for (nozzle, state) in self.emitters.iter_mut().zip(states) {
+            nozzle.state = state.clone();
+        }
+    }
+}
+
+impl Nozzle {
+    fn new(emitter: &Emitter, scene: &Scene, rng: Rng) -> Self {
+        let spacing = scene.spacing;
+        let index = |name: &str| scene.material(name).map_or(0, |(index, _)| index as MaterialIndex);
+        let carrier = scene.material(&emitter.material).map_or_else(
+            || Carrier { material: 0, phase: Phase::Gas, inverse_mass: 1.0 },
+            |(index, material)| Carrier {
+                material: index as MaterialIndex,
+                phase: material.phase(),
+                inverse_mass: real(1.0 / (material.density() * spacing * spacing)),
+            },
+        );
+        let columns = columns(emitter, spacing);
+        let still = ColumnState { progress: 0.0, behind: [0; ROWS_BEHIND] };
+        let markers = |smoke: &crate::scene::SmokeSource| Markers {
+            material: index(&smoke.material),
+            per_particle: smoke.per_particle,
+        };
+        Nozzle {
+            position: emitter.position.into(),
+            direction: Vector64::from(emitter.direction).normalize_or(Vector64::Y),
+            spacing,
+            jitter: emitter.jitter,
+            start: emitter.start,
+            stop: emitter.stop.unwrap_or(f64::INFINITY),
+            throttled: emitter.throttle,
+            carrier,
+            smoke: emitter.smoke.as_ref().map(markers),
+            state: EmitterState {
+                rng: rng.state(),
+                running: false,
+                throttle: 1.0,
+                columns: vec![still; columns.len()],
+            },
+            columns,
+        }
+    }
+
+    fn is_active(&self, time: f64) -> bool {
+        time >= self.start && time < self.stop
+    }
+
+    fn will_change(&self, time: f64, dt: f64) -> bool {
+        let crossing = |(column, state): (&Column, &ColumnState)| {
+            state.progress + column.speed * self.state.throttle * dt / self.spacing >= 1.0
+        };
+        self.is_active(time) != self.state.running
+            || self.state.running && self.columns.iter().zip(&self.state.columns).any(crossing)
+    }
+
+    fn advance(&mut self, time: f64, dt: f64, particles: &mut Particles, rows: &RowIndex, neighbors: &Neighbors) {
+        match (self.is_active(time), self.state.running) {
+            (true, false) => self.open(particles),
+            (false, true) => self.close(particles, rows),
+            (false, false) => return,
+            (true, true) => {}
+        }
+        if !self.state.running {
+            return;
+        }
+        self.state.throttle = if self.throttled { self.throttle(particles, neighbors) } else { 1.0 };
+        for index in 0..self.columns.len() {
+            self.advance_column(index, dt, particles, rows);
+        }
+    }
+
+    /// Adds the rows behind the face.
+    fn open(&mut self, particles: &mut Particles) {
+        self.state.running = true;
+        for index in 0..self.columns.len() {
+            for row in 0..ROWS_BEHIND {
+                self.state.columns[index].behind[row] = self.add_behind(index, (row + 1) as f64, particles);
+            }
+        }
+    }
+
+    /// Lets everything behind the face go.
+    fn close(&mut self, particles: &mut Particles, rows: &RowIndex) {
+        self.state.running = false;
+        for column in &self.state.columns {
+            for row in column.behind.iter().filter_map(|&id| rows.row(id)) {
+                particles.inverse_mass[row as usize] = self.carrier.inverse_mass;
+            }
+        }
+    }
+
+    fn advance_column(&mut self, index: usize, dt: f64, particles: &mut Particles, rows: &RowIndex) {
+        let column = &self.columns[index];
+        let speed = column.speed * self.state.throttle;
+        self.state.columns[index].progress += speed * dt / self.spacing;
+        while self.state.columns[index].progress >= 1.0 {
+            self.state.columns[index].progress -= 1.0;
+            self.let_go(index, particles, rows);
+        }
+        let velocity = vector(self.direction * speed);
+        for &id in &self.state.columns[index].behind {
+            if let Some(row) = row_of(id, particles, rows) {
+                particles.velocity[row] = velocity;
+            }
+        }
+    }
+
+    /// Lets the first particle of a column go, with its smoke, and adds a new last one.
+    fn let_go(&mut self, index: usize, particles: &mut Particles, rows: &RowIndex) {
+        let first = self.state.columns[index].behind[0];
+        if let Some(row) = row_of(first, particles, rows) {
+            particles.inverse_mass[row] = self.carrier.inverse_mass;
+            if let Some(age) = particles.age.get_mut(row) {
+                *age = 0.0;
+            }
+            if self.columns[index].core {
+                let (position, velocity) = (particles.position[row], particles.velocity[row]);
+                self.add_smoke(position, velocity, particles);
+            }
+        }
+        let progress = self.state.columns[index].progress;
+        let last = self.add_behind(index, ROWS_BEHIND as f64 - progress, particles);
+        let behind = &mut self.state.columns[index].behind;
+        behind.rotate_left(1);
+        behind[ROWS_BEHIND - 1] = last;
+    }
+
+    /// Adds a particle of a column, `distance` spacings behind the face.
+    fn add_behind(&mut self, index: usize, distance: f64, particles: &mut Particles) -> u32 {
+        let column = &self.columns[index];
+        let (offset, speed, temperature) = (column.offset, column.speed, column.temperature);
+        let shift = self.random_vector() * self.jitter;
+        let place = self.position + self.direction.perp() * offset - self.direction * (distance * self.spacing)
+            + shift * self.spacing;
+        particles.push(NewParticle {
+            position: vector(place),
+            velocity: vector(self.direction * (speed * self.state.throttle)),
+            inverse_mass: 0.0,
+            material: self.carrier.material,
+            phase: self.carrier.phase,
+            temperature,
+        })
+    }
+
+    /// Adds the markers of one core particle around it.
+    fn add_smoke(&mut self, position: Vector, velocity: Vector, particles: &mut Particles) {
+        let Some((material, count)) = self.smoke.as_ref().map(|smoke| (smoke.material, smoke.per_particle)) else {
+            return;
+        };
+        for _ in 0..count {
+            let shift = self.random_vector() * (0.5 * self.spacing);
+            particles.push(NewParticle {
+                position: position + vector(shift),
+                velocity,
+                inverse_mass: 0.0,
+                material,
+                phase: Phase::Smoke,
+                temperature: 0.0,
+            });
+        }
+    }
+
+    fn random_vector(&mut self) -> Vector64 {
+        let mut rng = Rng::from_state(self.state.rng);
+        let shift = Vector64::new(rng.signed_unit(), rng.signed_unit());
+        self.state.rng = rng.state();
+        shift
+    }
+
+    /// Part of the full speed, from the mean compression just ahead of the face.
+    fn throttle(&self, particles: &Particles, neighbors: &Neighbors) -> f64 {
+        let (mut sum, mut count) = (0.0, 0_u32);
+        let reach = 1.5 * self.spacing;
+        for column in &self.columns {
+            let probe = self.position + self.direction.perp() * column.offset + self.direction * reach;
+            let probe = vector(probe);
+            neighbors.for_each_near(probe, real(reach), |row| {
+                if (particles.position[row] - probe).length() < real(reach) && particles.inverse_mass[row] > 0.0 {
+                    sum += f64::from(particles.density_error[row].max(0.0));
+                    count += 1;
+                }
+            });
+        }
+        let mean = if count > 0 { sum / f64::from(count) } else { 0.0 };
+        (2.0 - mean / THROTTLE_COMPRESSION).clamp(0.0, 1.0)
+    }
+}
+
+/// The row of a particle that the index may be too old to know: one added in this very substep.
+fn row_of(id: u32, particles: &Particles, rows: &RowIndex) -> Option<usize> {
+    match rows.row(id) {
+        Some(row) => Some(row as usize),
+        None => particles.id.iter().rposition(|&other| other == id),
+    }
+}
+
+/// The columns of a face: one spacing apart, symmetric about the middle, the sheath outside the core.
+fn columns(emitter: &Emitter, spacing: f64) -> Vec<Column> {
+    let thickness = emitter.sheath.as_ref().map_or(0.0, |sheath| sheath.thickness);
+    let core = (emitter.width / spacing).round().max(1.0);
+    let sheath = (thickness / spacing).round();
+    let count = (core + 2.0 * sheath) as usize;
+    let half = 0.5 * core * spacing;
+    let column = |index: usize| {
+        let offset = (index as f64 + 0.5) * spacing - half - sheath * spacing;
+        match &emitter.sheath {
+            Some(sheath) if offset.abs() > half => Column {
+                offset,
+                speed: sheath.speed.unwrap_or(emitter.speed),
+                temperature: real(sheath.temperature),
+                core: false,
+            },
+            _ => Column {
+                offset,
+                speed: emitter.speed * emitter.profile.factor(offset / half),
+                temperature: real(emitter.temperature),
+                core: true,
+            },
+        }
+    };
+    (0..count).map(column).collect()
+}
+
+impl Profile {
+    /// Part of the speed at a place across the face, -1 to 1.
+    fn factor(self, across: f64) -> f64 {
+        match self {
+            Profile::Uniform => 1.0,
+            Profile::Parabolic => 1.0 - 0.5 * across * across,
+        }
+    }
+}

@@ -1,0 +1,121 @@
+//! Removal: past its lifetime, outside the domain, or gas with no smoke near.
+
+use crate::math::{Real, Vector, Vector64, real, vector};
+use crate::neighbors::{Cursor, Grid, Periodic};
+use crate::parallel::Parallelism;
+use crate::particles::Particles;
+use crate::phase::Phase;
+use crate::scene::{MaterialRef, Scene};
+
+/// The removal rules of a scene, applied once per frame.
+pub struct RemovalRules {
+    materials: Vec<Rule>,
+    region: Option<(Vector, Vector)>,
+    keep_radius: Real,
+    smoke: Grid,
+}
+
+#[derive(Clone, Copy)]
+struct Rule {
+    lifetime: Real,
+    keep_radius: Option<Real>,
+    keep_age: Real,
+}
+
+impl Rule {
+    fn new(material: MaterialRef<'_>) -> Self {
+        let lifetime = |given: Option<f64>| given.map_or(Real::INFINITY, real);
+        match material {
+            MaterialRef::Gas(gas) => Rule {
+                lifetime: lifetime(gas.lifetime),
+                keep_radius: gas.keep_radius.map(real),
+                keep_age: real(gas.keep_age),
+            },
+            MaterialRef::Smoke(smoke) => Rule { lifetime: lifetime(smoke.lifetime), ..Rule::never() },
+            MaterialRef::Liquid(_) => Rule::never(),
+        }
+    }
+
+    fn never() -> Self {
+        Rule { lifetime: Real::INFINITY, keep_radius: None, keep_age: 0.0 }
+    }
+}
+
+impl RemovalRules {
+    /// The rules of a scene, or nothing where no particle is ever removed.
+    pub fn new(scene: &Scene, periodic: Periodic) -> Option<Self> {
+        let materials: Vec<Rule> = scene.materials().map(Rule::new).collect();
+        let corner = |given: Option<[f64; 2]>, open: f64| given.map_or(Vector64::splat(open), Vector64::from);
+        let domain = &scene.domain;
+        let bounded = domain.remove_below.is_some() || domain.remove_above.is_some();
+        let region = bounded.then(|| {
+            let (low, high) = (corner(domain.remove_below, -f64::INFINITY), corner(domain.remove_above, f64::INFINITY));
+            (vector(low), vector(high))
+        });
+        let keep_radius = materials.iter().filter_map(|rule| rule.keep_radius).fold(0.0, Real::max);
+        let any = materials.iter().any(|rule| rule.lifetime.is_finite());
+        (any || region.is_some() || keep_radius > 0.0).then(|| RemovalRules {
+            materials,
+            region,
+            keep_radius,
+            smoke: Grid::new(periodic),
+        })
+    }
+
+    /// Whether particles must know their age.
+    pub fn needs_age(&self) -> bool {
+        self.keep_radius > 0.0 || self.materials.iter().any(|rule| rule.lifetime.is_finite())
+    }
+
+    /// Collects the rows to remove, in ascending order.
+    pub fn find(&mut self, particles: &Particles, parallelism: Parallelism, rows: &mut Vec<u32>) {
+        rows.clear();
+        let smoke = self.sorted_smoke(particles, parallelism);
+        let gone = |row: usize| self.is_expired(particles, row) || self.is_abandoned(particles, row, &smoke);
+        rows.extend((0..particles.len() as u32).filter(|&row| gone(row as usize)));
+    }
+
+    fn is_expired(&self, particles: &Particles, row: usize) -> bool {
+        if is_scripted(particles, row) {
+            return false;
+        }
+        let rule = &self.materials[usize::from(particles.material[row])];
+        let old = particles.age.get(row).is_some_and(|&age| age > rule.lifetime);
+        let x = particles.position[row];
+        old || self.region.is_some_and(|(low, high)| x.cmplt(low).any() || x.cmpgt(high).any())
+    }
+
+    /// Gas with no smoke within its keep radius.
+    fn is_abandoned(&self, particles: &Particles, row: usize, smoke: &[Vector]) -> bool {
+        let rule = &self.materials[usize::from(particles.material[row])];
+        let Some(radius) = rule.keep_radius else { return false };
+        if is_scripted(particles, row) || particles.age[row] < rule.keep_age {
+            return false;
+        }
+        let x = particles.position[row];
+        let (periodic, limit) = (self.smoke.periodic(), radius * radius);
+        let near = |marker: &Vector| periodic.min_image(x - *marker).length_squared() < limit;
+        let mut found = false;
+        self.smoke.for_each_run(x, radius, &mut Cursor::default(), |run| {
+            found = found || smoke[run.start as usize..run.end as usize].iter().any(near);
+        });
+        !found
+    }
+
+    /// Smoke positions in the order of the grid, which is made for them.
+    fn sorted_smoke(&mut self, particles: &Particles, parallelism: Parallelism) -> Vec<Vector> {
+        if self.keep_radius == 0.0 {
+            return Vec::new();
+        }
+        let is_smoke = |&row: &usize| particles.phase[row] == Phase::Smoke;
+        let smoke: Vec<Vector> =
+            (particles.dense()..particles.len()).filter(is_smoke).map(|row| particles.position[row]).collect();
+        let order = self.smoke.order(&smoke, smoke.len(), self.keep_radius, parallelism);
+        order.iter().map(|&row| smoke[row as usize]).collect()
+    }
+}
+
+/// Whether a script, such as an emitter, still moves the particle.
+fn is_scripted(particles: &Particles, row: usize) -> bool {
+    row < particles.dense() && particles.inverse_mass[row] == 0.0
+}

@@ -1,0 +1,46 @@
+//! The state of a run as one number.
+
+use crate::math::{Real, Vector};
+use crate::parallel::Parallelism;
+use crate::particles::Particles;
+use crate::rng::mix;
+use crate::step::Solver;
+
+impl Solver {
+    /// Hash of the state: id, material, position, remainder, velocity, mass, temperature and age of
+    /// every particle, and the number of substeps done. Independent of the order of rows, so the same
+    /// on any number of threads; two states with the same hash go on the same.
+    pub fn state_hash(&self) -> u64 {
+        let particles = self.particles();
+        let sum = Parallelism::Serial.reduce(
+            particles.len(),
+            |rows| rows.map(|row| particle_hash(particles, row)).fold(0, u64::wrapping_add),
+            u64::wrapping_add,
+        );
+        mix(sum ^ mix(self.step()))
+    }
+}
+
+fn particle_hash(particles: &Particles, row: usize) -> u64 {
+    let mut hash = mix(u64::from(particles.id[row]) ^ (u64::from(particles.material[row]) << 32));
+    let mut add = |word: u64| hash = mix(hash.rotate_left(7) ^ word);
+    for vector in [particles.position[row], particles.remainder[row], particles.velocity[row]] {
+        bits(vector).into_iter().for_each(&mut add);
+    }
+    add(real_bits(particles.inverse_mass[row]));
+    for column in [&particles.temperature, &particles.age] {
+        if let Some(&value) = column.get(row) {
+            add(real_bits(value));
+        }
+    }
+    hash
+}
+
+fn bits(vector: Vector) -> [u64; 2] {
+    [real_bits(vector.x), real_bits(vector.y)]
+}
+
+#[allow(clippy::unnecessary_cast)]
+fn real_bits(value: Real) -> u64 {
+    value.to_bits() as u64
+}

@@ -1,0 +1,118 @@
+//! What a solver shows of its state.
+
+use std::time::Duration;
+
+use super::Solver;
+use crate::bodies::Body;
+use crate::math::{Real, Vector};
+use crate::observe::{Event, Material, WallOutline};
+use crate::particles::Particles;
+use crate::phase::{MaterialIndex, Phase};
+
+impl Solver {
+    /// Simulated time [s].
+    pub fn time(&self) -> f64 {
+        self.world.clock.time
+    }
+
+    /// Frames done.
+    pub fn frame(&self) -> u64 {
+        self.world.clock.frame
+    }
+
+    /// Substeps done.
+    pub fn step(&self) -> u64 {
+        self.world.clock.step
+    }
+
+    /// Length of a frame [s].
+    pub fn frame_time(&self) -> f64 {
+        self.world.parts.frame_time
+    }
+
+    /// Rest distance of particles [m].
+    pub fn spacing(&self) -> f64 {
+        self.world.parts.spacing
+    }
+
+    /// Seed of the random choices.
+    pub fn seed(&self) -> u64 {
+        self.world.parts.seed
+    }
+
+    /// The particles. Rows are re-sorted by steps; ids are stable.
+    pub fn particles(&self) -> &Particles {
+        &self.world.parts.particles
+    }
+
+    /// Positions by row [m].
+    pub fn positions(&self) -> &[Vector] {
+        self.particles().positions()
+    }
+
+    /// Velocities by row [m/s].
+    pub fn velocities(&self) -> &[Vector] {
+        self.particles().velocities()
+    }
+
+    /// Stable ids by row.
+    pub fn ids(&self) -> &[u32] {
+        self.particles().ids()
+    }
+
+    /// Phases by row.
+    pub fn phases(&self) -> &[Phase] {
+        self.particles().phases()
+    }
+
+    /// Materials by row.
+    pub fn material_indices(&self) -> &[MaterialIndex] {
+        self.particles().materials()
+    }
+
+    /// Density errors C = rho/rho0 - 1 of the last substep by row; 0 without a density constraint.
+    pub fn density_errors(&self) -> &[Real] {
+        self.particles().density_errors()
+    }
+
+    /// Temperatures by row; empty when no material has one.
+    pub fn temperatures(&self) -> &[Real] {
+        self.particles().temperatures()
+    }
+
+    /// Advances each time particles are added or removed.
+    pub fn id_generation(&self) -> u64 {
+        self.world.clock.generation
+    }
+
+    /// The materials, by [`MaterialIndex`].
+    pub fn materials(&self) -> &[Material] {
+        &self.world.parts.materials
+    }
+
+    /// Rigid bodies.
+    pub fn bodies(&self) -> &[Body] {
+        &[]
+    }
+
+    /// Walls as lines to draw.
+    pub fn wall_outlines(&self) -> &[WallOutline] {
+        self.world.parts.walls.outlines()
+    }
+
+    /// Takes the events since the last call.
+    pub fn take_events(&mut self) -> Vec<Event> {
+        std::mem::take(&mut self.world.events)
+    }
+
+    /// Wall-clock time per stage since the start.
+    pub fn timings(&self) -> &[(&'static str, Duration)] {
+        self.world.timings.spent()
+    }
+
+    /// Memory held by particles, lists and indexes [bytes].
+    pub fn memory_bytes(&self) -> usize {
+        let world = &self.world;
+        world.parts.particles.memory_bytes() + world.parts.neighbors.memory_bytes() + world.rows.memory_bytes()
+    }
+}

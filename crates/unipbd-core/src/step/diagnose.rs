@@ -1,0 +1,127 @@
+//! Diagnostics: sums and extremes over the state, computed when asked for.
+
+use super::Solver;
+use super::world::World;
+use crate::math::{Vector64, wide};
+use crate::observe::{Diagnostics, GroupDiagnostics, MaterialDiagnostics};
+use crate::phase::Phase;
+
+/// Sums over a stretch of rows, combined in a fixed order.
+#[derive(Clone, Copy, Default)]
+struct Sums {
+    kinetic: f64,
+    potential: f64,
+    momentum: Vector64,
+    angular: f64,
+    speed_squared: f64,
+}
+
+impl Sums {
+    fn join(self, other: Sums) -> Sums {
+        Sums {
+            kinetic: self.kinetic + other.kinetic,
+            potential: self.potential + other.potential,
+            momentum: self.momentum + other.momentum,
+            angular: self.angular + other.angular,
+            speed_squared: self.speed_squared.max(other.speed_squared),
+        }
+    }
+}
+
+impl Solver {
+    /// The state in numbers.
+    pub fn diagnostics(&self) -> Diagnostics {
+        let world = &self.world;
+        let (clock, sums) = (&world.clock, world.sums());
+        let materials = world.material_diagnostics();
+        let fluids = || materials.iter().zip(&world.parts.materials).filter(|(_, material)| material.phase.is_fluid());
+        let fluid_count: u64 = fluids().map(|(diagnostics, _)| diagnostics.count).sum();
+        let weighted: f64 = fluids().map(|(d, _)| d.density_error_mean * d.count as f64).sum();
+        let mut count_by_phase = [0; Phase::ALL.len()];
+        for (diagnostics, material) in materials.iter().zip(&world.parts.materials) {
+            count_by_phase[material.phase as usize] += diagnostics.count;
+        }
+        let groups = world.parts.groups.iter().filter_map(|group| {
+            Some(GroupDiagnostics { name: group.name().to_owned(), violation: group.violation()? })
+        });
+        Diagnostics {
+            time: clock.time,
+            frame: clock.frame,
+            step: clock.step,
+            substeps: clock.substeps,
+            iterations: clock.substeps * world.parts.iterations,
+            list_builds: clock.list_builds,
+            count_by_phase,
+            density_error_mean: if fluid_count > 0 { weighted / fluid_count as f64 } else { 0.0 },
+            density_error_max: fluids().map(|(d, _)| d.density_error_max).fold(0.0, f64::max),
+            density_error_min: fluids().map(|(d, _)| d.density_error_min).fold(0.0, f64::min),
+            pressure_max: world.pressure_max(),
+            kinetic_energy: sums.kinetic,
+            potential_energy: sums.potential,
+            momentum: sums.momentum,
+            angular_momentum: sums.angular,
+            speed_max: sums.speed_squared.sqrt(),
+            groups: groups.collect(),
+            materials,
+        }
+    }
+}
+
+impl World {
+    fn sums(&self) -> Sums {
+        let (particles, gravity) = (&self.parts.particles, wide(self.parts.gravity));
+        let leaf = |rows: std::ops::Range<usize>| {
+            rows.fold(Sums::default(), |sums, row| {
+                let inverse_mass = f64::from(particles.inverse_mass[row]);
+                if inverse_mass == 0.0 {
+                    return sums;
+                }
+                let (x, v, mass) = (wide(particles.position[row]), wide(particles.velocity[row]), 1.0 / inverse_mass);
+                sums.join(Sums {
+                    kinetic: 0.5 * mass * v.length_squared(),
+                    potential: -mass * gravity.dot(x),
+                    momentum: v * mass,
+                    angular: mass * x.perp_dot(v),
+                    speed_squared: v.length_squared(),
+                })
+            })
+        };
+        self.parts.parallelism.reduce(particles.len(), leaf, Sums::join)
+    }
+
+    fn material_diagnostics(&self) -> Vec<MaterialDiagnostics> {
+        let particles = &self.parts.particles;
+        let empty = |name: &str| MaterialDiagnostics {
+            name: name.to_owned(),
+            count: 0,
+            density_error_mean: 0.0,
+            density_error_max: 0.0,
+            density_error_min: 0.0,
+        };
+        let mut all: Vec<_> = self.parts.materials.iter().map(|material| empty(&material.name)).collect();
+        for row in 0..particles.len() {
+            let error = f64::from(particles.density_error[row]);
+            let of = &mut all[usize::from(particles.material[row])];
+            of.count += 1;
+            if particles.inverse_mass[row] > 0.0 {
+                of.density_error_mean += error.max(0.0);
+                of.density_error_max = of.density_error_max.max(error);
+                of.density_error_min = of.density_error_min.min(error);
+            }
+        }
+        for of in &mut all {
+            of.density_error_mean /= of.count.max(1) as f64;
+        }
+        all
+    }
+
+    fn pressure_max(&self) -> f64 {
+        if self.clock.dt == 0.0 {
+            return 0.0;
+        }
+        let particles = &self.parts.particles;
+        let pressure = |row: usize| particles.multiplier[row] * particles.inverse_mass[row];
+        let largest = self.parts.parallelism.max(particles.dense(), pressure);
+        f64::from(largest.max(0.0)) / (self.clock.dt * self.clock.dt)
+    }
+}

@@ -1,0 +1,71 @@
+//! The stages of a substep: the page to read first.
+
+/// One stage of a substep. A scene runs only those it needs, in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Stage {
+    /// Emitters move their rows, let particles go and add new ones.
+    Emit,
+    /// Velocities take up the body forces, positions are predicted.
+    Predict,
+    /// The neighbour list is made valid for the predicted positions.
+    FindNeighbors,
+    /// Constraint groups prepare for the substep.
+    BeginGroups,
+    /// Constraint groups move particles, one after the other, each from one state.
+    Project,
+    /// Velocities follow from the displacements.
+    UpdateVelocities,
+    /// Groups that asked for it change the velocities.
+    FinishGroups,
+    /// Viscosity, drag, vorticity, heat.
+    Effects,
+    /// Smoke moves with its carrier.
+    AdvectSmoke,
+}
+
+impl Stage {
+    /// The name under which the stage is timed and shown.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Stage::Emit => "emit",
+            Stage::Predict => "predict",
+            Stage::FindNeighbors => "find_neighbors",
+            Stage::BeginGroups => "begin_groups",
+            Stage::Project => "project",
+            Stage::UpdateVelocities => "update_velocities",
+            Stage::FinishGroups => "finish_groups",
+            Stage::Effects => "effects",
+            Stage::AdvectSmoke => "advect_smoke",
+        }
+    }
+}
+
+/// What decides which stages a scene runs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Features {
+    pub emitters: bool,
+    pub neighbors: bool,
+    pub groups: bool,
+    /// Groups, or walls that anything can run into.
+    pub projection: bool,
+    pub velocity_passes: bool,
+    pub effects: bool,
+    pub smoke: bool,
+}
+
+/// The stages of a substep with these features. Decided when a scene is built or changed, not asked
+/// per particle and step: what a scene does not use is not in its list.
+pub(super) fn pipeline(features: Features) -> Vec<Stage> {
+    let stages = [
+        (Stage::Emit, features.emitters),
+        (Stage::Predict, true),
+        (Stage::FindNeighbors, features.neighbors),
+        (Stage::BeginGroups, features.groups),
+        (Stage::Project, features.projection),
+        (Stage::UpdateVelocities, true),
+        (Stage::FinishGroups, features.velocity_passes),
+        (Stage::Effects, features.effects),
+        (Stage::AdvectSmoke, features.smoke),
+    ];
+    stages.into_iter().filter_map(|(stage, needed)| needed.then_some(stage)).collect()
+}

@@ -1,0 +1,223 @@
+//! What each stage does.
+
+use super::integrate;
+use super::world::World;
+use super::{SolverError, Stage};
+use crate::math::Real;
+use crate::neighbors::Prepared;
+
+/// Speed in spacings per frame beyond which a run has diverged.
+const ABSURD_SPEED: f64 = 1e6;
+
+impl World {
+    /// One substep: the stages, in order.
+    pub(super) fn substep(&mut self) -> Result<(), SolverError> {
+        for index in 0..self.stages.len() {
+            let stage = self.stages[index];
+            let mut timings = std::mem::take(&mut self.timings);
+            let done = timings.time(stage, || self.run(stage));
+            self.timings = timings;
+            done?;
+        }
+        Ok(())
+    }
+
+    fn run(&mut self, stage: Stage) -> Result<(), SolverError> {
+        match stage {
+            Stage::Emit => self.emit(),
+            Stage::Predict => self.predict(),
+            Stage::FindNeighbors => self.find_neighbors(),
+            Stage::BeginGroups => self.begin_groups(),
+            Stage::Project => self.project(),
+            Stage::UpdateVelocities => return self.update_velocities(),
+            Stage::FinishGroups => self.finish_groups(),
+            Stage::Effects => self.apply_effects(),
+            Stage::AdvectSmoke => self.advect_smoke(),
+        }
+        Ok(())
+    }
+
+    fn emit(&mut self) {
+        let (parts, clock) = (&mut self.parts, &self.clock);
+        let Some(emitters) = &mut parts.emitters else { return };
+        let changes = emitters.will_change(clock.time, clock.dt);
+        emitters.advance(clock.time, clock.dt, &mut parts.particles, &self.rows, &parts.neighbors);
+        if changes {
+            self.population_changed();
+        }
+    }
+
+    fn predict(&mut self) {
+        let parts = &mut self.parts;
+        let extra = (self.extra.len() == parts.particles.len() && !self.extra.is_empty()).then_some(&self.extra[..]);
+        integrate::predict(&mut parts.particles, &parts.forces, extra, self.clock.dt as Real, parts.parallelism);
+        self.extra.clear();
+    }
+
+    fn find_neighbors(&mut self) {
+        let parts = &mut self.parts;
+        let prepared = parts.neighbors.prepare(&mut parts.particles, parts.cover, parts.parallelism);
+        if prepared == Prepared::Rebuilt {
+            self.index_rows();
+        }
+    }
+
+    fn begin_groups(&mut self) {
+        let mut groups = std::mem::take(&mut self.parts.groups);
+        let now = World::now(&self.parts, &self.rows, &self.clock);
+        groups.iter_mut().for_each(|group| group.begin_substep(now));
+        self.parts.groups = groups;
+    }
+
+    fn project(&mut self) {
+        if self.parts.groups.is_empty() {
+            self.corrections.reset(self.parts.particles.len());
+            self.take_up_corrections();
+        }
+        let mut groups = std::mem::take(&mut self.parts.groups);
+        for _ in 0..self.parts.iterations {
+            for group in &mut groups {
+                self.corrections.reset(self.parts.particles.len());
+                group.project(World::now(&self.parts, &self.rows, &self.clock), &mut self.corrections);
+                self.take_up_corrections();
+            }
+        }
+        for columns in groups.iter().filter_map(|group| group.density()) {
+            let particles = &mut self.parts.particles;
+            particles.density_error[..columns.error.len()].copy_from_slice(columns.error);
+            particles.multiplier[..columns.multiplier.len()].copy_from_slice(columns.multiplier);
+        }
+        self.parts.groups = groups;
+    }
+
+    fn take_up_corrections(&mut self) {
+        let parts = &mut self.parts;
+        integrate::apply(&mut parts.particles, &self.corrections, &parts.walls, parts.parallelism);
+    }
+
+    fn update_velocities(&mut self) -> Result<(), SolverError> {
+        let parts = &mut self.parts;
+        let (dt, periodic) = (self.clock.dt as Real, parts.neighbors.periodic());
+        integrate::update_velocities(&mut parts.particles, dt, periodic, parts.parallelism);
+        for age in &mut parts.particles.age {
+            *age += dt;
+        }
+        self.check_speeds()
+    }
+
+    fn check_speeds(&mut self) -> Result<(), SolverError> {
+        let parts = &self.parts;
+        let velocities = &parts.particles.velocity;
+        let square = |row: usize| {
+            let square = velocities[row].length_squared();
+            if square.is_nan() { Real::INFINITY } else { square }
+        };
+        let largest = parts.parallelism.max(velocities.len(), square).max(0.0);
+        self.clock.speed = f64::from(largest).sqrt();
+        let limit = ABSURD_SPEED * parts.spacing / parts.frame_time;
+        if self.clock.speed < limit {
+            return Ok(());
+        }
+        let row = (0..velocities.len()).find(|&row| square(row) == largest).unwrap_or(0);
+        Err(SolverError::Diverged {
+            stage: Stage::UpdateVelocities.name(),
+            step: self.clock.step,
+            time: self.clock.time,
+            particle: parts.particles.id[row],
+            material: parts.materials[usize::from(parts.particles.material[row])].name.clone(),
+            what: format!("moves at {} m/s", velocities[row].length()),
+        })
+    }
+
+    fn finish_groups(&mut self) {
+        let mut groups = std::mem::take(&mut self.parts.groups);
+        for group in &mut groups {
+            let mut velocities = self.parts.particles.velocity.clone();
+            group.finish_velocities(World::now(&self.parts, &self.rows, &self.clock), &mut velocities);
+            self.parts.particles.velocity = velocities;
+        }
+        self.parts.groups = groups;
+    }
+
+    /// Effects see the projected positions: the list is checked once more for them.
+    fn apply_effects(&mut self) {
+        if self.stages.contains(&Stage::FindNeighbors) {
+            self.refresh_neighbors();
+        }
+        let mut effects = std::mem::take(&mut self.parts.effects);
+        for effect in &mut effects {
+            let temperatures = !self.parts.particles.temperature.is_empty();
+            self.changes.reset(self.parts.particles.dense(), temperatures);
+            effect.apply(World::now(&self.parts, &self.rows, &self.clock), &mut self.changes);
+            self.take_up_changes();
+        }
+        self.parts.effects = effects;
+    }
+
+    fn take_up_changes(&mut self) {
+        let dense = self.parts.particles.dense();
+        let particles = &mut self.parts.particles;
+        let (changes, inverse_masses) = (&self.changes, &particles.inverse_mass);
+        self.parts.parallelism.update(&mut particles.velocity[..dense], |row, velocity| {
+            if inverse_masses[row] > 0.0 {
+                *velocity += changes.velocity[row];
+            }
+        });
+        for (row, change) in changes.temperature.iter().enumerate() {
+            if inverse_masses[row] > 0.0 {
+                particles.temperature[row] += change;
+            }
+        }
+    }
+
+    /// Makes the list hold for the positions as they are now.
+    fn refresh_neighbors(&mut self) {
+        let parts = &mut self.parts;
+        let prepared =
+            parts.neighbors.prepare(&mut parts.particles, crate::neighbors::Cover::Predicted, parts.parallelism);
+        if prepared == Prepared::Rebuilt {
+            self.index_rows();
+        }
+    }
+
+    fn advect_smoke(&mut self) {
+        if self.parts.effects.is_empty() {
+            self.refresh_neighbors();
+        }
+        let Some(mut smoke) = self.parts.smoke.take() else { return };
+        let now = World::now(&self.parts, &self.rows, &self.clock);
+        let particles = now.particles;
+        let dense = particles.dense();
+        let loose = particles.len() - dense;
+        let mut moved = vec![None; loose];
+        now.parallelism.update(&mut moved, |index, moved| {
+            let row = dense + index;
+            if particles.phase[row].is_passive() {
+                let (velocity, before) = (particles.velocity[row], particles.displacement[row]);
+                *moved = Some(smoke.advect(now, particles.position[row], velocity, before));
+            }
+        });
+        let particles = &mut self.parts.particles;
+        for (row, moved) in (dense..).zip(moved) {
+            let Some(moved) = moved else { continue };
+            particles.displacement[row] = particles.velocity[row];
+            particles.position[row] = moved.position;
+            particles.start[row] = moved.position;
+            particles.velocity[row] = moved.velocity;
+        }
+        smoke.set_last_dt(self.clock.dt as Real);
+        self.parts.smoke = Some(smoke);
+    }
+
+    /// One projection without forces and motion.
+    pub(super) fn hold_still(&mut self) {
+        integrate::hold(&mut self.parts.particles);
+        if self.stages.contains(&Stage::FindNeighbors) {
+            self.find_neighbors();
+        }
+        self.begin_groups();
+        self.project();
+        integrate::carry_remainders(&mut self.parts.particles, self.parts.parallelism);
+        integrate::wrap(&mut self.parts.particles, self.parts.neighbors.periodic(), self.parts.parallelism);
+    }
+}

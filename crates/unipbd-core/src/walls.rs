@@ -1,0 +1,7 @@
+//! Static walls: distances, and how much of a kernel lies inside them.
+
+mod coverage;
+mod geometry;
+
+pub use coverage::Coverage;
+pub use geometry::{Hit, Walls};

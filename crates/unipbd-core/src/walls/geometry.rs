@@ -1,0 +1,290 @@
+//! The shapes of static walls.
+
+use super::Coverage;
+use crate::math::{Real, Vector, Vector64, real, vector};
+use crate::observe::WallOutline;
+use crate::scene::{HalfPlane, Obstacle, Scene, Side, Tank};
+
+/// How deep a point is inside a wall, and the way out.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Direction out of the wall, of length 1.
+    pub normal: Vector,
+    /// Distance to the surface, positive inside the wall [m].
+    pub depth: Real,
+    /// Coulomb friction coefficient.
+    pub friction: Real,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Plane {
+    point: Vector,
+    normal: Vector,
+    friction: Real,
+}
+
+/// Where two walls of a tank meet: the part behind both is counted once, not twice.
+#[derive(Clone, Copy, Debug)]
+struct Corner {
+    point: Vector,
+    /// Signs that turn the outside of both walls into the quadrant x < a, y < b.
+    outward: Vector,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Rectangle {
+    min: Vector,
+    max: Vector,
+    friction: Real,
+}
+
+/// All static walls of a scene.
+#[derive(Clone, Debug, Default)]
+pub struct Walls {
+    planes: Vec<Plane>,
+    corners: Vec<Corner>,
+    rectangles: Vec<Rectangle>,
+    outlines: Vec<WallOutline>,
+}
+
+impl Walls {
+    /// The walls of a scene.
+    pub fn new(scene: &Scene) -> Self {
+        let mut walls = Walls::default();
+        scene.half_plane.iter().for_each(|wall| walls.add_half_plane(wall));
+        scene.tank.iter().for_each(|tank| walls.add_tank(tank));
+        scene.obstacle.iter().for_each(|obstacle| walls.add_obstacle(obstacle));
+        walls
+    }
+
+    /// Whether there are no walls.
+    pub fn is_empty(&self) -> bool {
+        self.planes.is_empty() && self.rectangles.is_empty()
+    }
+
+    /// Lines to draw.
+    pub fn outlines(&self) -> &[WallOutline] {
+        &self.outlines
+    }
+
+    /// Part of a kernel at `x` that lies inside walls, and its gradient [1/m].
+    pub fn coverage(&self, x: Vector, coverage: &Coverage) -> (Real, Vector) {
+        let reach = coverage.radius();
+        let (mut inside, mut gradient) = (0.0, Vector::ZERO);
+        for plane in &self.planes {
+            let distance = (x - plane.point).dot(plane.normal);
+            if distance < reach {
+                let (part, slope) = coverage.behind(distance);
+                inside += part;
+                gradient += plane.normal * slope;
+            }
+        }
+        if inside > 0.0 {
+            for corner in &self.corners {
+                let a = (x - corner.point) * corner.outward;
+                let (part, slope) = coverage.quadrant(a.x, a.y);
+                inside -= part;
+                gradient -= slope * corner.outward;
+            }
+        }
+        for rectangle in &self.rectangles {
+            let (part, slope) = rectangle.coverage(x, coverage);
+            inside += part;
+            gradient += slope;
+        }
+        (inside, gradient)
+    }
+
+    /// The walls that hold the point `x` inside them, planes first.
+    pub fn hits(&self, x: Vector) -> impl Iterator<Item = Hit> + '_ {
+        let planes = self.planes.iter().filter_map(move |plane| plane.hit(x));
+        planes.chain(self.rectangles.iter().filter_map(move |rectangle| rectangle.hit(x)))
+    }
+
+    /// Moves a point out of all walls.
+    pub fn clamp(&self, mut x: Vector) -> Vector {
+        for plane in &self.planes {
+            if let Some(hit) = plane.hit(x) {
+                x += hit.normal * hit.depth;
+            }
+        }
+        for rectangle in &self.rectangles {
+            if let Some(hit) = rectangle.hit(x) {
+                x += hit.normal * hit.depth;
+            }
+        }
+        x
+    }
+
+    fn add_half_plane(&mut self, wall: &HalfPlane) {
+        let (point, normal) = (Vector64::from(wall.point), Vector64::from(wall.normal).normalize());
+        self.push_plane(point, normal, wall.friction);
+        let along = normal.perp() * 1e3;
+        self.outlines.push(WallOutline { points: vec![point - along, point + along], closed: false, endless: true });
+    }
+
+    fn add_tank(&mut self, tank: &Tank) {
+        let (min, max) = (Vector64::from(tank.min), Vector64::from(tank.max));
+        let sides = [
+            (Side::Left, min, Vector64::X),
+            (Side::Right, max, -Vector64::X),
+            (Side::Bottom, min, Vector64::Y),
+            (Side::Top, max, -Vector64::Y),
+        ];
+        let closed = |side: Side| !tank.open.contains(&side);
+        for (side, point, normal) in sides {
+            if closed(side) {
+                self.push_plane(point, normal, tank.friction);
+            }
+        }
+        for (horizontal, x, sign_x) in [(Side::Left, min.x, -1.0), (Side::Right, max.x, 1.0)] {
+            for (vertical, y, sign_y) in [(Side::Bottom, min.y, -1.0), (Side::Top, max.y, 1.0)] {
+                if closed(horizontal) && closed(vertical) {
+                    let (point, outward) = (Vector64::new(x, y), Vector64::new(sign_x, sign_y));
+                    self.corners.push(Corner { point: vector(point), outward: vector(outward) });
+                }
+            }
+        }
+        self.outlines.extend(tank_outlines(min, max, &tank.open));
+    }
+
+    fn add_obstacle(&mut self, obstacle: &Obstacle) {
+        let (min, max) = (Vector64::from(obstacle.min), Vector64::from(obstacle.max));
+        self.rectangles.push(Rectangle { min: vector(min), max: vector(max), friction: real(obstacle.friction) });
+        self.outlines.push(WallOutline { points: ring(min, max).to_vec(), closed: true, endless: false });
+    }
+
+    fn push_plane(&mut self, point: Vector64, normal: Vector64, friction: f64) {
+        self.planes.push(Plane { point: vector(point), normal: vector(normal), friction: real(friction) });
+    }
+}
+
+impl Plane {
+    #[inline]
+    fn hit(&self, x: Vector) -> Option<Hit> {
+        let depth = -(x - self.point).dot(self.normal);
+        (depth > 0.0).then_some(Hit { normal: self.normal, depth, friction: self.friction })
+    }
+}
+
+impl Rectangle {
+    fn coverage(&self, x: Vector, coverage: &Coverage) -> (Real, Vector) {
+        let reach = Vector::splat(coverage.radius());
+        let (low, high) = (self.min - x, self.max - x);
+        if low.cmpge(reach).any() || high.cmple(-reach).any() {
+            return (0.0, Vector::ZERO);
+        }
+        let corners = [(high.x, high.y, 1.0), (low.x, high.y, -1.0), (high.x, low.y, -1.0), (low.x, low.y, 1.0)];
+        let (mut inside, mut gradient) = (0.0, Vector::ZERO);
+        for (a, b, sign) in corners {
+            let (part, slope) = coverage.quadrant(a, b);
+            inside += sign * part;
+            gradient -= slope * sign;
+        }
+        (inside, gradient)
+    }
+
+    fn hit(&self, x: Vector) -> Option<Hit> {
+        let (low, high) = (x - self.min, self.max - x);
+        if low.cmple(Vector::ZERO).any() || high.cmple(Vector::ZERO).any() {
+            return None;
+        }
+        let sides = [(low.x, -Vector::X), (high.x, Vector::X), (low.y, -Vector::Y), (high.y, Vector::Y)];
+        let (depth, normal) = sides.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
+        Some(Hit { normal, depth, friction: self.friction })
+    }
+}
+
+/// Corners of a rectangle, counter-clockwise from the lower left one.
+fn ring(min: Vector64, max: Vector64) -> [Vector64; 4] {
+    [min, Vector64::new(max.x, min.y), max, Vector64::new(min.x, max.y)]
+}
+
+/// The closed sides of a tank, joined into as few lines as they make.
+fn tank_outlines(min: Vector64, max: Vector64, open: &[Side]) -> Vec<WallOutline> {
+    let corners = ring(min, max);
+    let sides = [Side::Bottom, Side::Right, Side::Top, Side::Left];
+    let closed = sides.map(|side| !open.contains(&side));
+    let Some(gap) = closed.iter().position(|side| !side) else {
+        return vec![WallOutline { points: corners.to_vec(), closed: true, endless: false }];
+    };
+    let mut outlines: Vec<WallOutline> = Vec::new();
+    let mut joined = false;
+    for side in (1..=4).map(|step| (gap + step) % 4) {
+        if !closed[side] {
+            joined = false;
+            continue;
+        }
+        let (from, to) = (corners[side], corners[(side + 1) % 4]);
+        match outlines.last_mut() {
+            Some(line) if joined => line.points.push(to),
+            _ => outlines.push(WallOutline { points: vec![from, to], closed: false, endless: false }),
+        }
+        joined = true;
+    }
+    outlines
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::Kernel;
+
+    fn tank(open: Vec<Side>) -> Walls {
+        let tank = Tank { min: [0.0, 0.0], max: [10.0, 8.0], open, friction: 0.0 };
+        Walls::new(&Scene { tank: vec![tank], ..Scene::default() })
+    }
+
+    /// Kernel inside the walls by brute force.
+    fn brute_force(kernel: &Kernel, x: Vector, solid: impl Fn(Vector) -> bool) -> Real {
+        let steps = 400;
+        let cell = 2.0 * kernel.radius() / steps as Real;
+        let mut sum = 0.0;
+        for row in 0..steps {
+            for column in 0..steps {
+                let offset = (Vector::new(column as Real, row as Real) + 0.5) * cell - kernel.radius();
+                if solid(x + offset) {
+                    sum += f64::from(kernel.value(offset.length()) * cell * cell);
+                }
+            }
+        }
+        real(sum)
+    }
+
+    #[test]
+    fn corner_of_a_tank_counts_what_is_behind_both_walls_once() {
+        let (walls, kernel) = (tank(vec![]), Kernel::new(2.5));
+        let coverage = Coverage::new(&kernel);
+        for x in [Vector::new(0.5, 0.5), Vector::new(1.7, 0.2), Vector::new(9.0, 7.5), Vector::new(5.0, 0.5)] {
+            let solid = |p: Vector| p.x < 0.0 || p.y < 0.0 || p.x > 10.0 || p.y > 8.0;
+            let expected = brute_force(&kernel, x, solid);
+            let (part, gradient) = walls.coverage(x, &coverage);
+            assert!((part - expected).abs() < 2e-3, "{x}: {part} {expected}");
+            let step = Vector::new(0.05, 0.0);
+            let difference = (walls.coverage(x + step, &coverage).0 - walls.coverage(x - step, &coverage).0) / 0.1;
+            assert!((gradient.x - difference).abs() < 3e-3, "{x}: {} {difference}", gradient.x);
+        }
+    }
+
+    #[test]
+    fn obstacle_covers_its_rectangle() {
+        let obstacle = Obstacle { min: [1.0, 1.0], max: [2.0, 4.0], friction: 0.0 };
+        let walls = Walls::new(&Scene { obstacle: vec![obstacle], ..Scene::default() });
+        let kernel = Kernel::new(2.5);
+        let coverage = Coverage::new(&kernel);
+        for x in [Vector::new(0.5, 0.5), Vector::new(2.4, 2.0), Vector::new(1.5, 4.2)] {
+            let expected = brute_force(&kernel, x, |p| p.x > 1.0 && p.x < 2.0 && p.y > 1.0 && p.y < 4.0);
+            assert!((walls.coverage(x, &coverage).0 - expected).abs() < 2e-3);
+        }
+        assert_eq!(walls.clamp(Vector::new(1.1, 2.0)), Vector::new(1.0, 2.0));
+    }
+
+    #[test]
+    fn open_side_lets_particles_through() {
+        let walls = tank(vec![Side::Top]);
+        assert_eq!(walls.clamp(Vector::new(5.0, 20.0)), Vector::new(5.0, 20.0));
+        assert_eq!(walls.clamp(Vector::new(-1.0, -2.0)), Vector::ZERO);
+        assert_eq!(walls.outlines().len(), 1);
+        assert_eq!(walls.outlines()[0].points.len(), 4);
+    }
+}
