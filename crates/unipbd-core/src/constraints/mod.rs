@@ -101,6 +101,12 @@ pub trait ConstraintGroup: Send + Sync {
         None
     }
 
+    /// Density errors at the positions as they are now, where this is the density group.
+    fn measure_density(&self, now: Substep<'_>) -> Option<Vec<Real>> {
+        let _ = now;
+        None
+    }
+
     /// What a saved state must hold beside the particles: words that [`restore`](Self::restore) takes.
     fn save(&self) -> Vec<u64> {
         Vec::new()

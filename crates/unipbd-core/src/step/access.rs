@@ -70,9 +70,10 @@ impl Solver {
         self.particles().materials()
     }
 
-    /// Density errors C = rho/rho0 - 1 of the last substep by row; 0 without a density constraint.
+    /// Density errors C = rho/rho0 - 1 at these positions by row; 0 without a density constraint.
+    /// Measured when first asked for after a frame.
     pub fn density_errors(&self) -> &[Real] {
-        self.particles().density_errors()
+        self.world.density_errors()
     }
 
     /// Temperatures by row; empty when no material has one.

@@ -2,7 +2,7 @@
 
 use super::Solver;
 use super::world::World;
-use crate::math::{Vector64, wide};
+use crate::math::{Real, Vector64, wide};
 use crate::observe::{Diagnostics, GroupDiagnostics, MaterialDiagnostics};
 use crate::phase::Phase;
 
@@ -68,6 +68,15 @@ impl Solver {
 }
 
 impl World {
+    /// Density errors at the present positions by row; measured when first asked for.
+    pub(super) fn density_errors(&self) -> &[Real] {
+        self.measured.get_or_init(|| {
+            let now = World::now(&self.parts, &self.rows, &self.clock);
+            let measured = self.parts.groups.iter().find_map(|group| group.measure_density(now));
+            measured.unwrap_or_else(|| vec![0.0; self.parts.particles.len()])
+        })
+    }
+
     fn sums(&self) -> Sums {
         let (particles, gravity) = (&self.parts.particles, wide(self.parts.gravity));
         let leaf = |rows: std::ops::Range<usize>| {
@@ -90,7 +99,7 @@ impl World {
     }
 
     fn material_diagnostics(&self) -> Vec<MaterialDiagnostics> {
-        let particles = &self.parts.particles;
+        let (particles, errors) = (&self.parts.particles, self.density_errors());
         let empty = |name: &str| MaterialDiagnostics {
             name: name.to_owned(),
             count: 0,
@@ -100,7 +109,7 @@ impl World {
         };
         let mut all: Vec<_> = self.parts.materials.iter().map(|material| empty(&material.name)).collect();
         for row in 0..particles.len() {
-            let error = f64::from(particles.density_error[row]);
+            let error = f64::from(errors[row]);
             let of = &mut all[usize::from(particles.material[row])];
             of.count += 1;
             if particles.inverse_mass[row] > 0.0 {

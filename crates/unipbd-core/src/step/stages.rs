@@ -54,7 +54,7 @@ impl World {
         self.extra.clear();
     }
 
-    fn find_neighbors(&mut self) {
+    pub(super) fn find_neighbors(&mut self) {
         let parts = &mut self.parts;
         let prepared = parts.neighbors.prepare(&mut parts.particles, parts.cover, parts.parallelism);
         if prepared == Prepared::Rebuilt {

@@ -1,5 +1,7 @@
 //! Everything a run holds, and the frame loop over it.
 
+use std::sync::OnceLock;
+
 use super::integrate::BodyForce;
 use super::pipeline::{Features, pipeline};
 use super::substeps::{Demand, SubstepRule};
@@ -63,6 +65,8 @@ pub(crate) struct World {
     pub stages: Vec<Stage>,
     pub events: Vec<Event>,
     pub timings: Timings,
+    /// Density errors at the positions of the last frame, once somebody asks for them.
+    pub(super) measured: OnceLock<Vec<Real>>,
     /// Accelerations by row that a user added for the next substep [m/s^2].
     pub extra: Vec<Vector>,
     pub(super) corrections: Corrections,
@@ -81,6 +85,7 @@ impl World {
             stages: Vec::new(),
             events: Vec::new(),
             timings: Timings::default(),
+            measured: OnceLock::new(),
             extra: Vec::new(),
             corrections: Corrections::default(),
             changes: Changes::default(),
@@ -126,6 +131,7 @@ impl World {
 
     /// One frame.
     pub fn frame(&mut self, mut hook: impl FnMut(&mut World)) -> Result<FrameReport, SolverError> {
+        self.measured = OnceLock::new();
         let removed = self.remove();
         let ids_before = self.parts.particles.ids_given();
         let builds_before = self.parts.neighbors.builds();
@@ -148,12 +154,13 @@ impl World {
 
     /// Brings the start to its rest density: projection without gravity and without velocity.
     pub fn settle(&mut self, substeps: u32) {
-        if self.parts.groups.is_empty() || self.parts.particles.dense() == 0 {
-            return;
-        }
         self.clock.dt = self.parts.frame_time;
-        for _ in 0..substeps {
-            self.hold_still();
+        if self.parts.particles.dense() > 0 {
+            (0..substeps).for_each(|_| self.hold_still());
+        }
+        // The start can be observed like any other moment.
+        if self.stages.contains(&Stage::FindNeighbors) {
+            self.find_neighbors();
         }
         self.clock = Clock { generation: self.clock.generation, ..Clock::default() };
     }

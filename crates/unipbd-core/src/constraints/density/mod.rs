@@ -104,6 +104,10 @@ impl ConstraintGroup for Density {
         Some(f64::from(worst))
     }
 
+    fn measure_density(&self, now: Substep<'_>) -> Option<Vec<Real>> {
+        Some(self.measure(now))
+    }
+
     fn density(&self) -> Option<DensityColumns<'_>> {
         Some(DensityColumns { error: &self.error, multiplier: &self.multiplier })
     }

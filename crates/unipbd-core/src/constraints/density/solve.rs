@@ -94,6 +94,29 @@ impl Density {
     }
 }
 
+impl Density {
+    /// Density errors at the positions as they are now, by a search of their own: the list may be
+    /// made for other positions.
+    pub(super) fn measure(&self, now: Substep<'_>) -> Vec<Real> {
+        let particles = now.particles;
+        let (positions, periodic) = (particles.positions(), now.neighbors.periodic());
+        let (radius, volume) = (self.kernel.radius(), self.settings.volume);
+        let mut errors = vec![0.0; particles.len()];
+        now.parallelism.update(&mut errors[..particles.dense()], |row, error| {
+            if !particles.phases()[row].is_fluid() {
+                return;
+            }
+            let x = positions[row];
+            let mut sum = 0.0;
+            now.neighbors.for_each_near(x, radius, |other| {
+                sum += self.kernel.value(periodic.min_image(x - positions[other]).length());
+            });
+            *error = volume * sum + now.walls.coverage(x, &self.coverage).0 - 1.0;
+        });
+        errors
+    }
+}
+
 impl DensityMaterial {
     /// The multiplier after one relaxed step.
     #[inline]
