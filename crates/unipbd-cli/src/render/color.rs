@@ -32,15 +32,18 @@ fn encoded(channel: f32) -> f32 {
 /// A colour from lightness (0 to 1), chroma and hue [deg] in Oklab (B. Ottosson, 2020), where equal
 /// steps look equally large. Chroma that sRGB cannot show is reduced until it can.
 fn from_oklch(lightness: f32, chroma: f32, hue_deg: f32) -> Rgb {
-    let mut chroma = chroma;
-    loop {
-        let channels = oklab_to_linear(lightness, chroma, hue_deg);
-        let shown = channels.iter().all(|channel| (-1e-3..=1.001).contains(channel));
-        if shown || chroma < 1e-3 {
-            return channels.map(|channel| (encoded(channel.clamp(0.0, 1.0)) * 255.0).round() as u8);
-        }
-        chroma *= 0.97;
+    let shown = |chroma: f32| {
+        oklab_to_linear(lightness, chroma, hue_deg).iter().all(|channel| (-1e-3..=1.001).contains(channel))
+    };
+    let [mut low, mut high] = [0.0, chroma];
+    if shown(high) {
+        low = high;
     }
+    for _ in 0..16 {
+        let middle = (low + high) / 2.0;
+        if shown(middle) { low = middle } else { high = middle }
+    }
+    oklab_to_linear(lightness, low, hue_deg).map(|channel| (encoded(channel.clamp(0.0, 1.0)) * 255.0).round() as u8)
 }
 
 fn oklab_to_linear(lightness: f32, chroma: f32, hue_deg: f32) -> [f32; 3] {

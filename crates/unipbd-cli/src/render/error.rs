@@ -58,8 +58,12 @@ impl fmt::Display for RenderError {
                 let [name, field] = [by.name(), by.field().unwrap_or(by.name())];
                 write!(f, "the frames have no {field} column to colour by {name}: record it with --fields {field}")
             }
-            RenderError::View => write!(f, "the view is empty: its upper right corner must lie above and right of its lower left one"),
-            RenderError::PictureSize { width, height } => write!(f, "cannot draw a picture of {width} x {height} pixels"),
+            RenderError::View => {
+                write!(f, "the view is empty: its upper right corner must lie above and right of its lower left one")
+            }
+            RenderError::PictureSize { width, height } => {
+                write!(f, "cannot draw a picture of {width} x {height} pixels")
+            }
             RenderError::Range => write!(f, "the range of the colour map must run from a smaller to a larger number"),
             RenderError::Format(path) => write!(
                 f,

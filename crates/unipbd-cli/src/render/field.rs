@@ -32,10 +32,8 @@ impl Field {
     fn touch(&mut self, columns: &std::ops::Range<usize>, rows: &std::ops::Range<usize>) {
         let [[left, right], [top, bottom]] =
             self.touched.unwrap_or([[columns.start, columns.end], [rows.start, rows.end]]);
-        self.touched = Some([
-            [left.min(columns.start), right.max(columns.end)],
-            [top.min(rows.start), bottom.max(rows.end)],
-        ]);
+        self.touched =
+            Some([[left.min(columns.start), right.max(columns.end)], [top.min(rows.start), bottom.max(rows.end)]]);
     }
 
     /// Adds values with the weight (1 - r^2/R^2)^2 within `reach` R [pixels] of a point.

@@ -121,8 +121,7 @@ fn pictures(
     names: &Numbered,
 ) -> Result<Rendered, RenderError> {
     if let Some(folder) = names.path(0).parent() {
-        std::fs::create_dir_all(folder)
-            .map_err(|source| RenderError::Write { path: folder.to_owned(), source })?;
+        std::fs::create_dir_all(folder).map_err(|source| RenderError::Write { path: folder.to_owned(), source })?;
     }
     let mut done = Rendered { frames: 0, path: names.path(0), size: [0; 2], fps: None };
     for frame in job.selection.many(frames) {

@@ -2,13 +2,14 @@
 
 use super::image::Image;
 use super::scalar::Scalar;
-use super::text::{self, Align};
+use super::text::{self, Align, Lettering};
 use super::theme::Theme;
 
 /// Writes the simulated time into the upper left corner.
 pub(super) fn time_stamp(image: &mut Image, time: f64, theme: &Theme, scale: f32) {
     let height = 11.0 * scale;
-    text::draw(image, &format!("{time:.2} s"), [16.0 * scale, 16.0 * scale + height], height, Align::Left, theme.text);
+    let lettering = Lettering { height, align: Align::Left, color: theme.text, halo: theme.background };
+    text::draw(image, &format!("{time:.2} s"), [16.0 * scale, 16.0 * scale + height], lettering);
 }
 
 /// Height of the strip that holds the colour bar, an even number of pixels.
@@ -31,14 +32,16 @@ pub(super) fn color_bar(image: &mut Image, scalar: &Scalar, top: u32, theme: &Th
         }
     }
     let height = 9.0 * scale.max(0.75);
-    text::draw(image, scalar.by.label(), [left - 14.0 * scale, bar + thickness - 1.0], height, Align::Right, theme.text);
+    let title = Lettering { height, align: Align::Right, color: theme.text, halo: theme.background };
+    text::draw(image, scalar.by.label(), [left - 14.0 * scale, bar + thickness - 1.0], title);
+    let tick = Lettering { align: Align::Center, color: theme.faint_text, ..title };
     let ends = scalar.ends();
     for k in 0..5 {
         let t = f64::from(k) / 4.0;
         let label = number(ends[0] + t * (ends[1] - ends[0]), ends[1] - ends[0]);
         let x = left + t as f32 * (right - left);
         let base = bar + thickness + 8.0 * scale + height;
-        text::draw(image, &label, [x, base], height, Align::Center, theme.faint_text);
+        text::draw(image, &label, [x, base], tick);
     }
 }
 

@@ -65,15 +65,13 @@ impl Selection {
         let every = self.every.unwrap_or(1);
         let mut counted = 0;
         let to = self.to.unwrap_or(f64::INFINITY) + 1e-9;
-        frames
-            .take_while(move |frame| frame.as_ref().map_or(true, |frame| frame.time <= to))
-            .filter(move |frame| {
-                let Ok(frame) = frame else { return true };
-                let counts = self.contains(frame.time);
-                let chosen = counts && counted % every == 0;
-                counted += u64::from(counts);
-                chosen
-            })
+        frames.take_while(move |frame| frame.as_ref().map_or(true, |frame| frame.time <= to)).filter(move |frame| {
+            let Ok(frame) = frame else { return true };
+            let counts = self.contains(frame.time);
+            let chosen = counts && counted % every == 0;
+            counted += u64::from(counts);
+            chosen
+        })
     }
 }
 
@@ -158,7 +156,8 @@ mod tests {
     #[test]
     fn span_and_every_choose_frames() {
         let selection = Selection { from: Some(0.5), to: Some(0.75), every: Some(5), ..Selection::default() };
-        let times: Vec<f64> = selection.many(frames(61, 60.0)).map(|frame| (frame.unwrap().time * 60.0).round()).collect();
+        let times: Vec<f64> =
+            selection.many(frames(61, 60.0)).map(|frame| (frame.unwrap().time * 60.0).round()).collect();
         assert_eq!(times, [30.0, 35.0, 40.0, 45.0]);
     }
 }

@@ -23,7 +23,7 @@ const GAP: f32 = 2.2;
 /// corners sharp, `d` is a dot; other corners are rounded.
 fn glyph(letter: char) -> (u8, &'static str) {
     match letter {
-        ' ' => (2, ""),
+        ' ' => (1, ""),
         '0' => (4, "o02424808"),
         '1' => (2, "s062822"),
         '2' => (4, "0708484502;s0242"),
@@ -110,8 +110,22 @@ fn grid_width(text: &str) -> f32 {
     text.chars().map(|letter| f32::from(glyph(letter).0) + GAP).sum::<f32>() - GAP
 }
 
-/// Draws a line of text; `height` is that of a capital, `anchor` lies on the base line [pixels].
-pub(super) fn draw(image: &mut Image, text: &str, anchor: [f32; 2], height: f32, align: Align, color: Rgb) {
+/// How a text is set.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Lettering {
+    /// Height of a capital in pixels.
+    pub height: f32,
+    /// Where it stands relative to its anchor.
+    pub align: Align,
+    /// Colour of the lines.
+    pub color: Rgb,
+    /// Colour of a rim that keeps the text readable on anything.
+    pub halo: Rgb,
+}
+
+/// Draws a line of text whose anchor lies on the base line [pixels].
+pub(super) fn draw(image: &mut Image, text: &str, anchor: [f32; 2], lettering: Lettering) {
+    let Lettering { height, align, color, halo } = lettering;
     let unit = height / CAPITAL;
     let shift = match align {
         Align::Left => 0.0,
@@ -128,7 +142,9 @@ pub(super) fn draw(image: &mut Image, text: &str, anchor: [f32; 2], height: f32,
         left += (f32::from(width) + GAP) * unit;
     }
     if let Some(path) = path.finish() {
-        stroke_path(image, &path, color, (0.95 * unit).max(1.1));
+        let width = (0.95 * unit).max(1.1);
+        stroke_path(image, &path, halo, width + 2.0 * unit);
+        stroke_path(image, &path, color, width);
     }
 }
 
@@ -166,7 +182,8 @@ fn add_stroke(path: &mut PathBuilder, stroke: &str, place: impl Fn(f32, f32) -> 
     to(Command::Move, start);
     let corners = if closed { 0..count } else { 1..count - 1 };
     for corner in corners {
-        let [before, here, after] = [points[(corner + count - 1) % count], points[corner], points[(corner + 1) % count]];
+        let [before, here, after] =
+            [points[(corner + count - 1) % count], points[corner], points[(corner + 1) % count]];
         to(Command::Line, toward(here, before, roundness));
         to(Command::Bend(here), toward(here, after, roundness));
     }

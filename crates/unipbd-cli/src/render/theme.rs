@@ -9,6 +9,8 @@ pub(super) struct Theme {
     pub wall_fill: Rgb,
     pub text: Rgb,
     pub faint_text: Rgb,
+    /// What the edge of a surface is tinted with, and how much.
+    pub rim: (Rgb, f32),
     /// Colours of bodies that have none of their own, in turn.
     pub bodies: [Rgb; 5],
     /// Colour of a body that nothing moves.
@@ -25,6 +27,7 @@ impl Theme {
                 wall_fill: [36, 45, 57],
                 text: [226, 232, 240],
                 faint_text: [148, 161, 178],
+                rim: ([255; 3], 0.40),
                 bodies,
                 fixed_body: [110, 122, 138],
             },
@@ -34,6 +37,7 @@ impl Theme {
                 wall_fill: [221, 226, 232],
                 text: [27, 34, 44],
                 faint_text: [93, 104, 120],
+                rim: ([10, 20, 40], 0.30),
                 bodies,
                 fixed_body: [150, 160, 172],
             },

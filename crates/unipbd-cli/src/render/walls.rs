@@ -7,25 +7,59 @@ use super::image::Image;
 use super::theme::Theme;
 use super::view::Camera;
 
-/// Draws a wall: a line with a lighter band on its solid side, which lies to the right of the way
-/// from point to point. The inside of a solid box and the far side of an endless wall are filled.
-pub(super) fn draw(image: &mut Image, wall: &WallOutline, camera: &Camera, theme: &Theme, scale: f32) {
-    let mut points = wall.points.clone();
-    points.dedup();
-    if wall.closed && points.len() > 1 && points.first() == points.last() {
-        points.pop();
+/// A wall made ready to draw.
+pub(super) struct Wall {
+    points: Vec<Vector64>,
+    closed: bool,
+    endless: bool,
+}
+
+impl Wall {
+    /// Nothing for an outline that is no line.
+    pub fn new(outline: &WallOutline, camera: &Camera) -> Option<Wall> {
+        let mut points = outline.points.clone();
+        points.dedup();
+        if outline.closed && points.len() > 1 && points.first() == points.last() {
+            points.pop();
+        }
+        if points.len() < 2 || !points.iter().all(|point| point.is_finite()) {
+            return None;
+        }
+        if outline.endless {
+            extend(&mut points, camera.diagonal());
+        }
+        Some(Wall { points, closed: outline.closed, endless: outline.endless })
     }
-    if points.len() < 2 || !points.iter().all(|point| point.is_finite()) {
-        return;
+
+    /// Draws a line with a lighter band on its solid side, which lies to the right of the way from
+    /// point to point. The inside of a solid box and the far side of an endless wall are filled.
+    pub fn draw(&self, image: &mut Image, camera: &Camera, theme: &Theme, spacing: f32, scale: f32) {
+        let points = &self.points;
+        let solid_inside = self.closed && area(points) < 0.0;
+        // The band must hide what a surface draws beyond the wall.
+        let band_depth = f64::from((9.0 * scale).max(0.8 * spacing)) / camera.scale;
+        let depth = if self.endless { 4.0 * camera.diagonal() } else { band_depth };
+        let filled = if solid_inside { polygon(points, camera) } else { band(points, self.closed, depth, camera) };
+        fill(image, filled, theme.wall_fill);
+        stroke(image, line(points, self.closed, camera), theme.wall_line, 1.8 * scale);
     }
-    if wall.endless {
-        extend(&mut points, camera.diagonal());
+
+    /// The mirror images of a point in those straight pieces that have it before them, no farther
+    /// away than `reach` [m].
+    pub fn mirror(&self, point: Vector64, reach: f64, mut image: impl FnMut(Vector64)) {
+        let count = self.points.len();
+        let pieces = if self.closed { count } else { count - 1 };
+        for k in 0..pieces {
+            let [from, to] = [self.points[k], self.points[(k + 1) % count]];
+            let way = to - from;
+            let length = way.length();
+            let height = way.perp_dot(point - from) / length;
+            let along = way.dot(point - from) / length;
+            if height > 0.0 && height < reach && along > -reach && along < length + reach {
+                image(point + way.perp() * (-2.0 * height / length));
+            }
+        }
     }
-    let solid_inside = wall.closed && area(&points) < 0.0;
-    let depth = if wall.endless { 4.0 * camera.diagonal() } else { f64::from(9.0 * scale) / camera.scale };
-    let filled = if solid_inside { polygon(&points, camera) } else { band(&points, wall.closed, depth, camera) };
-    fill(image, filled, theme.wall_fill);
-    stroke(image, line(&points, wall.closed, camera), theme.wall_line, 1.8 * scale);
 }
 
 /// Twice the signed area: positive where the points run counter-clockwise.
@@ -78,12 +112,7 @@ pub(super) fn line(points: &[Vector64], closed: bool, camera: &Camera) -> Option
     path.finish()
 }
 
-fn add_points<'a>(
-    path: &mut PathBuilder,
-    points: impl Iterator<Item = &'a Vector64>,
-    closed: bool,
-    camera: &Camera,
-) {
+fn add_points<'a>(path: &mut PathBuilder, points: impl Iterator<Item = &'a Vector64>, closed: bool, camera: &Camera) {
     for (k, point) in points.enumerate() {
         let [x, y] = camera.pixel(*point);
         if k == 0 { path.move_to(x, y) } else { path.line_to(x, y) }

@@ -80,7 +80,8 @@ impl GifWriter {
         let colors = usize::from(self.options.colors.clamp(2, 255));
         let best = Effort { colors, tolerance: self.options.tolerance, thinning: 1 };
         let Some(limit) = self.options.size_limit else { return self.encode(best) };
-        let steps = [(1, 255, 0), (1, 96, 5), (1, 64, 8), (2, 96, 5), (2, 48, 10), (3, 48, 10), (4, 32, 12), (6, 24, 16)];
+        let steps =
+            [(1, 255, 0), (1, 96, 5), (1, 64, 8), (2, 96, 5), (2, 48, 10), (3, 48, 10), (4, 32, 12), (6, 24, 16)];
         for (thinning, most_colors, least_tolerance) in steps {
             let tolerance = best.tolerance.max(least_tolerance);
             let bytes = self.encode(Effort { colors: colors.min(most_colors), tolerance, thinning })?;
@@ -207,8 +208,7 @@ impl Rectangle {
             self.min = [0; 2];
         }
         let [columns, rows] = [self.min[0]..self.max[0] + 1, self.min[1]..self.max[1] + 1];
-        let buffer: Vec<u8> =
-            rows.clone().flat_map(|y| pixels[y * width..][columns.clone()].iter().copied()).collect();
+        let buffer: Vec<u8> = rows.clone().flat_map(|y| pixels[y * width..][columns.clone()].iter().copied()).collect();
         Frame {
             left: columns.start as u16,
             top: rows.start as u16,
