@@ -1,3 +1,4 @@
 //! The `unipbd` command line as a library: scene files, runs, logs, pictures.
 
+pub mod scene_file;
 pub mod snapshot;
