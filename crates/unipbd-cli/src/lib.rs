@@ -1,4 +1,5 @@
 //! The `unipbd` command line as a library: scene files, runs, logs, pictures.
 
 pub mod render;
+pub mod scene_file;
 pub mod snapshot;
