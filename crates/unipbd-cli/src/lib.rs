@@ -1,3 +1,5 @@
 //! The `unipbd` command line as a library: scene files, runs, logs, pictures.
 
+pub mod read;
+pub mod record;
 pub mod snapshot;
