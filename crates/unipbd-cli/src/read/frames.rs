@@ -47,7 +47,8 @@ impl Frames {
                 }
                 Record::Message { header, data } => {
                     let Some(channel) = self.channels.get_mut(&header.channel_id) else { continue };
-                    let number = std::mem::replace(&mut channel.messages, channel.messages.wrapping_add(1));
+                    let number = channel.messages;
+                    channel.messages = number.wrapping_add(1);
                     let frame = if header.sequence == number {
                         self.assembler.add(channel.topic, header.log_time, &data)
                     } else {
