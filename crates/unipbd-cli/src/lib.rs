@@ -2,4 +2,6 @@
 
 pub mod render;
 pub mod scene_file;
+pub mod read;
+pub mod record;
 pub mod snapshot;
