@@ -6,7 +6,7 @@ use unipbd_core::observe::WallOutline;
 use unipbd_core::phase::{MaterialIndex, Phase};
 
 /// One output frame.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Snapshot {
     /// Simulated time [s].
     pub time: f64,
@@ -29,7 +29,7 @@ pub struct Snapshot {
 }
 
 /// What stays the same over a run: what a picture or a log needs besides its frames.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Setting {
     /// Title of the scene.
     pub name: String,

@@ -100,7 +100,8 @@ pub struct Event {
     pub message: String,
 }
 
-/// A wall as a line to draw: straight pieces from point to point [m].
+/// A wall as a line to draw: straight pieces from point to point [m]. Its solid side lies to the
+/// right of the way: a box full of wall runs clockwise, a tank to stay in counter-clockwise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WallOutline {
     /// Corners in order.

@@ -7,6 +7,7 @@ mod description;
 mod estimate;
 mod layout;
 mod materials;
+mod nearest;
 mod problem;
 mod settings;
 mod sources;
@@ -14,8 +15,9 @@ mod validate;
 mod walls;
 
 pub use description::{Domain, Environment, Scene, View};
-pub use estimate::Estimate;
+pub use estimate::{BYTES_PER_PARTICLE, Estimate, SECONDS_PER_PARTICLE_AND_SUBSTEP};
 pub use materials::{Gas, Liquid, MaterialRef, Smoke};
+pub use nearest::nearest;
 pub use problem::{KeyPath, KeySegment, Problem, Problems};
 pub use settings::{GradientPoint, SolverSettings, Substeps};
 pub use sources::{Block, Disc, Emitter, Profile, Sheath, SmokeSource};

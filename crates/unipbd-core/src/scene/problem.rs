@@ -31,6 +31,14 @@ impl KeyPath {
         path.0.push(KeySegment::Key(key.to_owned()));
         path
     }
+
+    /// This path with the number of an array element behind it.
+    #[must_use]
+    pub fn then_index(&self, index: usize) -> Self {
+        let mut path = self.clone();
+        path.0.push(KeySegment::Index(index));
+        path
+    }
 }
 
 impl fmt::Display for KeyPath {

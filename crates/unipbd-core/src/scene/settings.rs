@@ -78,7 +78,7 @@ impl<'de> Deserialize<'de> for Substeps {
     }
 }
 
-/// The form of [`Substeps`] in a JSON schema.
+/// `"auto"` or a number of substeps per frame.
 #[cfg(feature = "schema")]
 #[derive(schemars::JsonSchema)]
 #[schemars(untagged)]

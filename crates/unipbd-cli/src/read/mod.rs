@@ -1,0 +1,120 @@
+//! Reads the logs that [`record`](crate::record) writes: whole ones, and ones cut off by a crash.
+//!
+//! Reading needs no summary or index: a log is read from its start, so one without an end gives all
+//! frames up to the cut.
+
+mod assemble;
+mod error;
+mod frames;
+mod records;
+mod summary;
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::path::{Path, PathBuf};
+
+use mcap::records::Record;
+use unipbd_core::observe::Event;
+
+use crate::record::{Fields, Header, METADATA, SCENE_ATTACHMENT};
+use crate::snapshot::{Setting, Snapshot};
+use records::Records;
+
+pub use crate::record::schema::Diagnostics as DiagnosticsRecord;
+pub use error::LogError;
+pub use frames::Frames;
+pub use summary::Totals;
+
+/// A log on disk.
+#[derive(Clone, Debug)]
+pub struct Log {
+    path: PathBuf,
+    version: String,
+    header: Header,
+    fields: Fields,
+    totals: Option<Totals>,
+}
+
+/// A frame of a log.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Frame {
+    /// Particles, in ascending order of their ids, and bodies.
+    pub snapshot: Snapshot,
+    /// Numbers about the frame, where the run recorded them.
+    pub diagnostics: Option<DiagnosticsRecord>,
+    /// What happened since the frame before.
+    pub events: Vec<Event>,
+}
+
+impl Log {
+    /// Opens a log and reads what it says once.
+    pub fn open(path: &Path) -> Result<Log, LogError> {
+        let file = File::open(path).map_err(|cause| LogError::io(path, cause))?;
+        let (scene, metadata) = read_opening(path, Records::new(file, path)?)?;
+        let scene_text = String::from_utf8(scene).map_err(|_| LogError::damaged(path, "its scene is not UTF-8"))?;
+        let (header, fields) =
+            Header::from_metadata(&metadata, scene_text).map_err(|reason| LogError::damaged(path, reason))?;
+        if metadata.get("scene_sha256") != Some(&header.scene_sha256()) {
+            return Err(LogError::damaged(path, "its scene does not have the recorded SHA-256"));
+        }
+        let version = metadata.get("version").cloned().unwrap_or_default();
+        let totals = summary::read_totals(path);
+        Ok(Log { path: path.to_owned(), version, header, fields, totals })
+    }
+
+    /// Where the log is.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Version of unipbd that wrote it.
+    pub fn version(&self) -> &str {
+        &self.version
+    }
+
+    /// Scene, seed, overrides and the like.
+    pub fn header(&self) -> &Header {
+        &self.header
+    }
+
+    /// What stays the same over the run.
+    pub fn setting(&self) -> &Setting {
+        &self.header.setting
+    }
+
+    /// Fields that were asked for.
+    pub fn fields(&self) -> Fields {
+        self.fields
+    }
+
+    /// What the summary says; `None` for a log that was cut off.
+    pub fn totals(&self) -> Option<Totals> {
+        self.totals
+    }
+
+    /// Reads the frames one by one from the start.
+    pub fn frames(&self) -> Result<Frames, LogError> {
+        let file = File::open(&self.path).map_err(|cause| LogError::io(&self.path, cause))?;
+        Ok(Frames::new(Records::new(file, &self.path)?, &self.path, self.header.setting.materials.len()))
+    }
+}
+
+/// Scene and metadata, which stand before all messages.
+fn read_opening(path: &Path, mut records: Records<File>) -> Result<(Vec<u8>, BTreeMap<String, String>), LogError> {
+    let (mut scene, mut metadata) = (None, None);
+    while scene.is_none() || metadata.is_none() {
+        match records.next()? {
+            Some(Record::Attachment { header, data, .. }) if header.name == SCENE_ATTACHMENT => {
+                scene = Some(data.into_owned());
+            }
+            Some(Record::Metadata(record)) if record.name == METADATA => metadata = Some(record.metadata),
+            None | Some(Record::Schema { .. } | Record::Channel(_) | Record::Message { .. }) => break,
+            Some(_) => {}
+        }
+    }
+    match (scene, metadata) {
+        (Some(scene), Some(metadata)) => Ok((scene, metadata)),
+        _ if records.truncated() => Err(LogError::damaged(path, "it ends before its first frame")),
+        _ => Err(LogError::foreign(path, "it is an MCAP file without a unipbd scene in it")),
+    }
+}

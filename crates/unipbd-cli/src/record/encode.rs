@@ -1,0 +1,368 @@
+//! From a frame to the messages of it, in the order in which the log holds them.
+
+use std::io;
+use std::ops::Range;
+
+use prost::Message;
+use unipbd_core::bodies::{Body, BodyKind};
+use unipbd_core::math::Vector64;
+use unipbd_core::observe::{Diagnostics, Event, Severity};
+use unipbd_core::phase::Phase;
+
+use super::messages::{self, Level, Log, POINT_STRIDE, PointCloud};
+use super::schema::{self, Bodies, BodyShape, BodyState, GroupDiagnostics, MaterialDiagnostics, ParticleColumns};
+use super::shapes;
+use super::topic::Topic;
+use super::{Fields, Header};
+use crate::snapshot::{Setting, Snapshot};
+
+/// The messages of one frame, encoded one behind the other.
+#[derive(Debug, Default)]
+pub(crate) struct EncodedFrame {
+    pub(crate) messages: Vec<EncodedMessage>,
+    pub(crate) bytes: Vec<u8>,
+}
+
+/// Where a message lies in [`EncodedFrame::bytes`].
+#[derive(Debug)]
+pub(crate) struct EncodedMessage {
+    pub(crate) topic: Topic,
+    /// Simulated time [ns].
+    pub(crate) time: u64,
+    pub(crate) range: Range<usize>,
+}
+
+impl EncodedFrame {
+    fn push(&mut self, topic: Topic, time: u64, message: &impl Message) {
+        let start = self.bytes.len();
+        self.bytes.reserve(message.encoded_len());
+        // Writing into a vector fails only when memory ends.
+        let _ = message.encode(&mut self.bytes);
+        self.messages.push(EncodedMessage { topic, time, range: start..self.bytes.len() });
+    }
+}
+
+/// Turns frames into messages and remembers what the log already says.
+pub(crate) struct Encoder {
+    setting: Setting,
+    fields: Fields,
+    /// Time of the last message [ns].
+    time: u64,
+    /// Whether a frame was encoded before.
+    started: bool,
+    /// Bodies as last described.
+    described: Vec<Body>,
+    /// Ids, materials and phases as last written, and the asked fields of this frame.
+    columns: ParticleColumns,
+    /// Rows of a snapshot in the order of their ids, with the id in the high half.
+    order: Vec<u64>,
+    cloud: PointCloud,
+}
+
+impl Encoder {
+    pub(crate) fn new(header: &Header, fields: Fields) -> Self {
+        Encoder {
+            setting: header.setting.clone(),
+            fields,
+            time: 0,
+            started: false,
+            described: Vec::new(),
+            columns: ParticleColumns::default(),
+            order: Vec::new(),
+            cloud: messages::empty_cloud(messages::WORLD.to_owned()),
+        }
+    }
+
+    /// Encodes a frame into `frame`, whose memory is reused. `/particles` comes last: where it is,
+    /// the frame is whole.
+    pub(crate) fn encode(
+        &mut self,
+        snapshot: &Snapshot,
+        diagnostics: Option<&Diagnostics>,
+        state_hash: Option<u64>,
+        events: &[Event],
+        frame: &mut EncodedFrame,
+    ) -> io::Result<()> {
+        check_columns(snapshot)?;
+        frame.messages.clear();
+        frame.bytes.clear();
+        let now = nanoseconds(snapshot.time).max(self.time);
+        self.encode_events(events, now, frame);
+        self.time = now;
+        self.encode_shapes(&snapshot.bodies, frame);
+        self.sort_by_id(&snapshot.ids);
+        self.encode_columns(snapshot, frame);
+        if let Some(diagnostics) = diagnostics {
+            frame.push(Topic::Diagnostics, now, &diagnostics_message(diagnostics, state_hash));
+        }
+        self.encode_particles(snapshot, frame);
+        self.started = true;
+        Ok(())
+    }
+
+    /// Events carry their own time, but log time never runs backwards.
+    fn encode_events(&mut self, events: &[Event], now: u64, frame: &mut EncodedFrame) {
+        for event in events {
+            self.time = nanoseconds(event.time).clamp(self.time, now);
+            let level = match event.severity {
+                Severity::Info => Level::Info,
+                Severity::Warning => Level::Warning,
+            };
+            let message = Log {
+                timestamp: Some(messages::timestamp(nanoseconds(event.time))),
+                level: level as i32,
+                message: event.message.clone(),
+                name: "unipbd".to_owned(),
+                ..Default::default()
+            };
+            frame.push(Topic::Log, self.time, &message);
+        }
+    }
+
+    /// Walls once, bodies when their shapes changed, poses every frame.
+    fn encode_shapes(&mut self, bodies: &[Body], frame: &mut EncodedFrame) {
+        let now = self.time;
+        let walls = &self.setting.walls;
+        let first_walls = !self.started && !walls.is_empty();
+        let new_shapes = !same_shapes(&self.described, bodies);
+        if first_walls {
+            let samples = shapes::boundary_samples(walls, self.setting.spacing);
+            let cloud = messages::cloud(messages::WORLD.to_owned(), now, &samples, shapes::WALL_COLOR);
+            frame.push(Topic::Boundary, now, &cloud);
+        }
+        if new_shapes {
+            for (id, body) in (0..).zip(bodies).filter(|(_, body)| !body.samples.is_empty()) {
+                let cloud = messages::cloud(messages::body_frame(id), now, &body.samples, shapes::BODY_COLOR);
+                frame.push(Topic::BodySamples(id), now, &cloud);
+            }
+        }
+        if first_walls || new_shapes {
+            let update = shapes::scene_update(now, walls, bodies, self.described.len());
+            frame.push(Topic::Scene, now, &update);
+        }
+        if !bodies.is_empty() || new_shapes {
+            frame.push(Topic::Transforms, now, &messages::transforms(now, bodies));
+            frame.push(Topic::Bodies, now, &bodies_message(bodies, new_shapes));
+        }
+        if new_shapes {
+            self.described = bodies.to_vec();
+        }
+    }
+
+    /// Rows in the order of their ids: the log's order stays while rows of the solver are re-sorted.
+    fn sort_by_id(&mut self, ids: &[u32]) {
+        self.order.clear();
+        self.order.extend(ids.iter().zip(0u64..).map(|(id, row)| u64::from(*id) << 32 | row));
+        if !self.order.is_sorted() {
+            self.order.sort_unstable();
+        }
+    }
+
+    fn encode_columns(&mut self, snapshot: &Snapshot, frame: &mut EncodedFrame) {
+        let changed = self.update_ids(snapshot);
+        let columns = &mut self.columns;
+        let rows = || self.order.iter().map(|key| row(*key));
+        for values in [&mut columns.velocity_x, &mut columns.velocity_y] {
+            values.clear();
+        }
+        columns.density_error.clear();
+        columns.temperature.clear();
+        if let (true, Some(velocities)) = (self.fields.velocity, &snapshot.velocities) {
+            columns.velocity_x.extend(rows().map(|row| velocities[row][0]));
+            columns.velocity_y.extend(rows().map(|row| velocities[row][1]));
+        }
+        if let (true, Some(errors)) = (self.fields.density, &snapshot.density_errors) {
+            columns.density_error.extend(rows().map(|row| errors[row]));
+        }
+        if let (true, Some(temperatures)) = (self.fields.temperature, &snapshot.temperatures) {
+            columns.temperature.extend(rows().map(|row| temperatures[row]));
+        }
+        if changed || !self.started {
+            frame.push(Topic::Columns, self.time, columns);
+        } else if self.fields.any() {
+            let kept = [&mut columns.id, &mut columns.material, &mut columns.phase].map(std::mem::take);
+            frame.push(Topic::Columns, self.time, columns);
+            [columns.id, columns.material, columns.phase] = kept;
+        }
+    }
+
+    /// Takes over the ids, materials and phases of a snapshot; says whether they changed.
+    fn update_ids(&mut self, snapshot: &Snapshot) -> bool {
+        let columns = &mut self.columns;
+        let same = columns.id.len() == self.order.len()
+            && self.order.iter().enumerate().all(|(place, key)| {
+                let row = row(*key);
+                columns.id[place] == snapshot.ids[row]
+                    && columns.material[place] == u32::from(snapshot.materials[row])
+                    && columns.phase[place] == snapshot.phases[row] as u32
+            });
+        if same {
+            return false;
+        }
+        for values in [&mut columns.id, &mut columns.material, &mut columns.phase] {
+            values.clear();
+        }
+        let rows = || self.order.iter().map(|key| row(*key));
+        columns.id.extend(rows().map(|row| snapshot.ids[row]));
+        columns.material.extend(rows().map(|row| u32::from(snapshot.materials[row])));
+        columns.phase.extend(rows().map(|row| snapshot.phases[row] as u32));
+        true
+    }
+
+    fn encode_particles(&mut self, snapshot: &Snapshot, frame: &mut EncodedFrame) {
+        let colors: Vec<[u8; 4]> = self.setting.materials.iter().map(|m| rgba(m.color, m.phase)).collect();
+        let mut data = Vec::from(std::mem::take(&mut self.cloud.data));
+        data.resize(self.order.len() * POINT_STRIDE, 0);
+        for (key, bytes) in self.order.iter().zip(data.chunks_exact_mut(POINT_STRIDE)) {
+            let row = row(*key);
+            let color = colors.get(usize::from(snapshot.materials[row]));
+            let color = color.copied().unwrap_or(rgba([200; 3], snapshot.phases[row]));
+            bytes.copy_from_slice(&messages::pack_point(snapshot.positions[row], color));
+        }
+        self.cloud.data = data.into();
+        self.cloud.timestamp = Some(messages::timestamp(self.time));
+        frame.push(Topic::Particles, self.time, &self.cloud);
+    }
+}
+
+/// The row in a key of [`Encoder::order`].
+fn row(key: u64) -> usize {
+    (key & u64::from(u32::MAX)) as usize
+}
+
+/// Colour of a particle: gas is drawn faintly, so that the smoke in it shows.
+fn rgba([red, green, blue]: [u8; 3], phase: Phase) -> [u8; 4] {
+    let alpha = match phase {
+        Phase::Gas => 80,
+        Phase::Smoke => 160,
+        _ => 255,
+    };
+    [red, green, blue, alpha]
+}
+
+/// Simulated time as the log holds it: whole nanoseconds from 0.
+fn nanoseconds(seconds: f64) -> u64 {
+    (seconds * 1e9).round() as u64
+}
+
+fn check_columns(snapshot: &Snapshot) -> io::Result<()> {
+    let count = snapshot.positions.len();
+    let optional = [
+        snapshot.velocities.as_ref().map(Vec::len),
+        snapshot.density_errors.as_ref().map(Vec::len),
+        snapshot.temperatures.as_ref().map(Vec::len),
+    ];
+    let needed = [snapshot.ids.len(), snapshot.phases.len(), snapshot.materials.len()];
+    if needed.into_iter().chain(optional.into_iter().flatten()).all(|length| length == count) {
+        return Ok(());
+    }
+    Err(io::Error::new(io::ErrorKind::InvalidInput, "the columns of a frame differ in length"))
+}
+
+fn same_shapes(described: &[Body], bodies: &[Body]) -> bool {
+    let same = |(a, b): (&Body, &Body)| {
+        a.kind == b.kind
+            && a.mass == b.mass
+            && a.inertia == b.inertia
+            && a.radius == b.radius
+            && a.outline == b.outline
+            && a.samples == b.samples
+    };
+    described.len() == bodies.len() && described.iter().zip(bodies).all(same)
+}
+
+/// Diagnostics as the log holds them.
+fn diagnostics_message(diagnostics: &Diagnostics, state_hash: Option<u64>) -> schema::Diagnostics {
+    let count = |phase| capped(diagnostics.count(phase));
+    schema::Diagnostics {
+        time: diagnostics.time,
+        frame: capped(diagnostics.frame),
+        step: capped(diagnostics.step),
+        substeps: diagnostics.substeps,
+        iterations: diagnostics.iterations,
+        list_builds: diagnostics.list_builds,
+        count_liquid: count(Phase::Liquid),
+        count_gas: count(Phase::Gas),
+        count_smoke: count(Phase::Smoke),
+        count_rigid: count(Phase::Rigid),
+        count_solid: count(Phase::Solid),
+        density_error_mean: diagnostics.density_error_mean,
+        density_error_max: diagnostics.density_error_max,
+        density_error_min: diagnostics.density_error_min,
+        pressure_max: diagnostics.pressure_max,
+        kinetic_energy: diagnostics.kinetic_energy,
+        potential_energy: diagnostics.potential_energy,
+        momentum_x: diagnostics.momentum.x,
+        momentum_y: diagnostics.momentum.y,
+        angular_momentum: diagnostics.angular_momentum,
+        speed_max: diagnostics.speed_max,
+        state_hash: state_hash.map(|hash| format!("{hash:016x}")).unwrap_or_default(),
+        materials: diagnostics.materials.iter().map(material_message).collect(),
+        groups: diagnostics.groups.iter().map(group_message).collect(),
+    }
+}
+
+fn material_message(material: &unipbd_core::observe::MaterialDiagnostics) -> MaterialDiagnostics {
+    MaterialDiagnostics {
+        name: material.name.clone(),
+        count: capped(material.count),
+        density_error_mean: material.density_error_mean,
+        density_error_max: material.density_error_max,
+    }
+}
+
+fn group_message(group: &unipbd_core::observe::GroupDiagnostics) -> GroupDiagnostics {
+    GroupDiagnostics { name: group.name.clone(), violation: group.violation }
+}
+
+fn capped(count: u64) -> u32 {
+    u32::try_from(count).unwrap_or(u32::MAX)
+}
+
+fn bodies_message(bodies: &[Body], with_shapes: bool) -> Bodies {
+    let states = (0..).zip(bodies).map(|(id, body)| body_state(id, body)).collect();
+    let shapes = (0..).zip(bodies).filter(|_| with_shapes).map(|(id, body)| body_shape(id, body)).collect();
+    Bodies { bodies: states, shapes }
+}
+
+fn body_state(id: u32, body: &Body) -> BodyState {
+    BodyState {
+        id,
+        name: body.name.clone(),
+        x: body.position.x,
+        y: body.position.y,
+        angle: body.angle,
+        velocity_x: body.velocity.x,
+        velocity_y: body.velocity.y,
+        angular_velocity: body.angular_velocity,
+        fluid_force_x: body.fluid_force.x,
+        fluid_force_y: body.fluid_force.y,
+        fluid_torque: body.fluid_torque,
+    }
+}
+
+fn body_shape(id: u32, body: &Body) -> BodyShape {
+    let split = |points: &[Vector64]| points.iter().map(|point| (point.x, point.y)).unzip();
+    let (outline_x, outline_y) = split(&body.outline);
+    let (sample_x, sample_y) = split(&body.samples);
+    BodyShape {
+        id,
+        kind: kind_name(body.kind).to_owned(),
+        mass: body.mass,
+        inertia: body.inertia,
+        radius: body.radius,
+        outline_x,
+        outline_y,
+        sample_x,
+        sample_y,
+    }
+}
+
+/// The word for a kind of body in the log.
+pub(crate) fn kind_name(kind: BodyKind) -> &'static str {
+    match kind {
+        BodyKind::Dynamic => "dynamic",
+        BodyKind::Kinematic => "kinematic",
+        BodyKind::Static => "static",
+    }
+}

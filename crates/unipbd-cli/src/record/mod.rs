@@ -1,0 +1,112 @@
+//! Records a run as an MCAP log that Lichtblick, Foxglove and Rerun replay.
+//!
+//! | topic | schema | when |
+//! |---|---|---|
+//! | `/particles` | foxglove.PointCloud: x, y, z as f32, red, green, blue, alpha as u8 | every frame, last |
+//! | `/particles/columns` | unipbd.ParticleColumns | when the set of ids changed; with fields, every frame |
+//! | `/diagnostics` | unipbd.Diagnostics | every frame for which there are any |
+//! | `/boundary` | foxglove.PointCloud: samples of the walls | once |
+//! | `/scene` | foxglove.SceneUpdate: walls, and bodies in their frames | once, and when a shape changed |
+//! | `/tf` | foxglove.FrameTransforms: all bodies, `world` to `body/<id>` | every frame |
+//! | `/bodies` | unipbd.Bodies | every frame |
+//! | `/bodies/samples/<id>` | foxglove.PointCloud in the frame of the body | once, and when a shape changed |
+//! | `/log` | foxglove.Log | events |
+//!
+//! All messages are protobuf. Topics a run does not use are absent. Particles are in the order of
+//! their ids, whatever order the solver has them in. Times are simulated times; no wall-clock time,
+//! path or number of threads is in the file, so the same run gives the same bytes.
+
+mod background;
+mod destination;
+mod encode;
+mod error;
+mod fields;
+mod header;
+mod messages;
+pub mod schema;
+mod shapes;
+mod topic;
+mod writer;
+
+use std::fs::File;
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use unipbd_core::observe::{Diagnostics, Event};
+
+use crate::snapshot::Snapshot;
+use background::Background;
+use encode::Encoder;
+use writer::LogWriter;
+
+pub use destination::{Destination, DestinationError, Existing};
+pub use error::RecordError;
+pub use fields::{Fields, UnknownField};
+pub use header::Header;
+
+pub(crate) use encode::kind_name;
+pub(crate) use header::{METADATA, SCENE_ATTACHMENT};
+pub(crate) use messages::{Level, Log, POINT_STRIDE, PointCloud, unpack_position};
+pub(crate) use topic::Topic;
+
+/// Writes a log frame by frame; compression and output happen on a thread of their own.
+///
+/// Call [`finish`](Recorder::finish): a recorder that is dropped closes its log too, but swallows
+/// errors.
+pub struct Recorder {
+    path: PathBuf,
+    encoder: Encoder,
+    background: Background,
+}
+
+/// A log that is complete.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Summary {
+    /// Frames in it.
+    pub frames: u64,
+    /// Its size [bytes].
+    pub bytes: u64,
+}
+
+impl Recorder {
+    /// Starts a log at a path; a file that is there is replaced at once (see [`Destination`] for
+    /// when that is wanted).
+    pub fn create(path: &Path, header: &Header, fields: Fields) -> Result<Recorder, RecordError> {
+        let file = File::create(path).map_err(|cause| RecordError::new(path, cause))?;
+        Recorder::to_writer(file, path, header, fields)
+    }
+
+    /// Starts a log on any writer; errors name it by `path`.
+    pub fn to_writer<W: Write + Send + 'static>(
+        output: W,
+        path: &Path,
+        header: &Header,
+        fields: Fields,
+    ) -> Result<Recorder, RecordError> {
+        let writer = LogWriter::new(output, header, fields).map_err(|error| RecordError::from_mcap(path, error))?;
+        let background = Background::start(writer).map_err(|cause| RecordError::new(path, cause))?;
+        Ok(Recorder { path: path.to_owned(), encoder: Encoder::new(header, fields), background })
+    }
+
+    /// Adds a frame with what is known about it and what happened since the last one. An error of
+    /// the output may show a few frames late.
+    pub fn record(
+        &mut self,
+        snapshot: &Snapshot,
+        diagnostics: Option<&Diagnostics>,
+        state_hash: Option<u64>,
+        events: &[Event],
+    ) -> Result<(), RecordError> {
+        let mut frame = self.background.spare_frame();
+        self.encoder
+            .encode(snapshot, diagnostics, state_hash, events, &mut frame)
+            .and_then(|()| self.background.send(frame))
+            .map_err(|cause| RecordError::new(&self.path, cause))
+    }
+
+    /// Completes the log.
+    pub fn finish(mut self) -> Result<Summary, RecordError> {
+        let totals = self.background.finish().map_err(|cause| RecordError::new(&self.path, cause))?;
+        Ok(Summary { frames: totals.frames, bytes: totals.bytes })
+    }
+}

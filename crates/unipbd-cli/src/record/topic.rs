@@ -1,0 +1,56 @@
+use super::{messages, schema};
+
+/// The topics of a log. A topic a run does not use has no channel.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Topic {
+    Particles,
+    Boundary,
+    BodySamples(u32),
+    Scene,
+    Transforms,
+    Diagnostics,
+    Columns,
+    Bodies,
+    Log,
+}
+
+impl Topic {
+    /// The name in the log.
+    pub(crate) fn name(self) -> String {
+        match self {
+            Topic::Particles => "/particles".to_owned(),
+            Topic::Boundary => "/boundary".to_owned(),
+            Topic::BodySamples(id) => format!("/bodies/samples/{id}"),
+            Topic::Scene => "/scene".to_owned(),
+            Topic::Transforms => "/tf".to_owned(),
+            Topic::Diagnostics => "/diagnostics".to_owned(),
+            Topic::Columns => "/particles/columns".to_owned(),
+            Topic::Bodies => "/bodies".to_owned(),
+            Topic::Log => "/log".to_owned(),
+        }
+    }
+
+    /// The topic with this name, if it is one of ours.
+    pub(crate) fn from_name(name: &str) -> Option<Topic> {
+        use Topic::{Bodies, Boundary, Columns, Diagnostics, Log, Particles, Scene, Transforms};
+        if let Some(id) = name.strip_prefix("/bodies/samples/") {
+            return id.parse().ok().map(Topic::BodySamples);
+        }
+        [Particles, Boundary, Scene, Transforms, Diagnostics, Columns, Bodies, Log]
+            .into_iter()
+            .find(|topic| topic.name() == name)
+    }
+
+    /// Name and descriptor set of its messages.
+    pub(crate) fn schema(self) -> (String, Vec<u8>) {
+        match self {
+            Topic::Particles | Topic::Boundary | Topic::BodySamples(_) => messages::schema::<messages::PointCloud>(),
+            Topic::Scene => messages::schema::<messages::SceneUpdate>(),
+            Topic::Transforms => messages::schema::<messages::FrameTransforms>(),
+            Topic::Log => messages::schema::<messages::Log>(),
+            Topic::Diagnostics => ("unipbd.Diagnostics".to_owned(), schema::descriptor_set()),
+            Topic::Columns => ("unipbd.ParticleColumns".to_owned(), schema::descriptor_set()),
+            Topic::Bodies => ("unipbd.Bodies".to_owned(), schema::descriptor_set()),
+        }
+    }
+}

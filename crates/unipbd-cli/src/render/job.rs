@@ -1,0 +1,194 @@
+use std::path::{Path, PathBuf};
+
+use super::encode::{GifOptions, GifWriter, Mp4Writer, write_png};
+use super::error::RenderError;
+use super::options::RenderOptions;
+use super::output::{Numbered, Output, plan_output};
+use super::renderer::Renderer;
+use super::select::{Cadence, Selection};
+use crate::snapshot::{Setting, Snapshot};
+
+/// Whether an output that exists may be replaced.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Existing {
+    /// An existing output is an error.
+    #[default]
+    Keep,
+    /// An existing output is replaced.
+    Replace,
+}
+
+/// What to render, and where to.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RenderJob {
+    /// Where to write; see [`plan_output`].
+    pub output: PathBuf,
+    /// Whether an existing output may be replaced.
+    pub existing: Existing,
+    /// Which frames to draw.
+    pub selection: Selection,
+    /// Simulated seconds shown in a second of a film.
+    pub speed: f64,
+    /// How pictures look.
+    pub options: RenderOptions,
+    /// How a GIF is compressed.
+    pub gif: GifOptions,
+    /// The program that makes MP4 files.
+    pub ffmpeg: PathBuf,
+}
+
+impl RenderJob {
+    /// A job with default settings.
+    pub fn new(output: impl Into<PathBuf>) -> RenderJob {
+        RenderJob {
+            output: output.into(),
+            existing: Existing::default(),
+            selection: Selection::default(),
+            speed: 1.0,
+            options: RenderOptions::default(),
+            gif: GifOptions::default(),
+            ffmpeg: PathBuf::from("ffmpeg"),
+        }
+    }
+}
+
+/// What was rendered.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Rendered {
+    /// Pictures drawn.
+    pub frames: u64,
+    /// The file, or the first of many.
+    pub path: PathBuf,
+    /// Size of the pictures in pixels.
+    pub size: [u32; 2],
+    /// Frames a second of a film.
+    pub fps: Option<f64>,
+}
+
+/// Draws the chosen frames and writes them; `progress` hears the number of frames read so far.
+///
+/// For films give the options a [`Survey`](super::Survey) first unless view and range are known:
+/// left open, the view is fitted to the first frame and the range widens as the film goes on.
+pub fn run<E: Into<Box<dyn std::error::Error + Send + Sync>>>(
+    frames: impl Iterator<Item = Result<Snapshot, E>>,
+    setting: &Setting,
+    job: &RenderJob,
+    mut progress: impl FnMut(u64),
+) -> Result<Rendered, RenderError> {
+    job.selection.check()?;
+    if !(job.speed > 0.0 && job.speed.is_finite()) {
+        return Err(RenderError::Job("the speed must be a positive number"));
+    }
+    let output = plan_output(&job.output)?;
+    let mut count = 0;
+    let frames = frames.map(|frame| {
+        count += 1;
+        progress(count);
+        frame.map_err(|error| RenderError::Frame(error.into()))
+    });
+    let renderer = Renderer::new(setting, job.options.clone());
+    match output {
+        Output::Picture(path) => picture(frames, renderer, job, &path),
+        Output::Pictures(names) => pictures(frames, renderer, job, &names),
+        Output::Gif(path) => film(frames, renderer, job, &path, Format::Gif),
+        Output::Mp4(path) => film(frames, renderer, job, &path, Format::Mp4),
+    }
+}
+
+/// Refuses to replace a file unless the job allows it.
+fn check_free(path: &Path, job: &RenderJob) -> Result<(), RenderError> {
+    let taken = job.existing == Existing::Keep && path.symlink_metadata().is_ok();
+    if taken { Err(RenderError::Exists(path.to_owned())) } else { Ok(()) }
+}
+
+fn picture(
+    frames: impl Iterator<Item = Result<Snapshot, RenderError>>,
+    mut renderer: Renderer,
+    job: &RenderJob,
+    path: &Path,
+) -> Result<Rendered, RenderError> {
+    check_free(path, job)?;
+    let frame = job.selection.single(frames)?;
+    let image = renderer.draw(&frame)?;
+    write_png(path, image)?;
+    Ok(Rendered { frames: 1, path: path.to_owned(), size: [image.width(), image.height()], fps: None })
+}
+
+fn pictures(
+    frames: impl Iterator<Item = Result<Snapshot, RenderError>>,
+    mut renderer: Renderer,
+    job: &RenderJob,
+    names: &Numbered,
+) -> Result<Rendered, RenderError> {
+    if let Some(folder) = names.path(0).parent() {
+        std::fs::create_dir_all(folder).map_err(|source| RenderError::Write { path: folder.to_owned(), source })?;
+    }
+    let mut done = Rendered { frames: 0, path: names.path(0), size: [0; 2], fps: None };
+    for frame in job.selection.many(frames) {
+        let path = names.path(done.frames);
+        check_free(&path, job)?;
+        let image = renderer.draw(&frame?)?;
+        write_png(&path, image)?;
+        done.size = [image.width(), image.height()];
+        done.frames += 1;
+    }
+    if done.frames == 0 { Err(RenderError::NoFrames) } else { Ok(done) }
+}
+
+/// Kinds of films.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Gif,
+    Mp4,
+}
+
+impl Format {
+    /// Frames a second above which frames are left out, unless the job says which to take.
+    fn most_fps(self) -> f64 {
+        match self {
+            Format::Gif => 25.0,
+            Format::Mp4 => 60.0,
+        }
+    }
+}
+
+/// A film being written.
+enum Film {
+    Gif(GifWriter),
+    Mp4(Mp4Writer),
+}
+
+fn film(
+    frames: impl Iterator<Item = Result<Snapshot, RenderError>>,
+    mut renderer: Renderer,
+    job: &RenderJob,
+    path: &Path,
+    format: Format,
+) -> Result<Rendered, RenderError> {
+    check_free(path, job)?;
+    let cadence = Cadence::new(job.speed, format.most_fps(), job.selection.every);
+    let (fps, frames) = cadence.apply(job.selection.many(frames))?;
+    let mut film: Option<Film> = None;
+    let mut done = Rendered { frames: 0, path: path.to_owned(), size: [0; 2], fps: Some(fps) };
+    for frame in frames {
+        let image = renderer.draw(&frame?)?;
+        let film = match &mut film {
+            Some(film) => film,
+            None => film.insert(match format {
+                Format::Gif => Film::Gif(GifWriter::new(path, fps, job.gif)),
+                Format::Mp4 => Film::Mp4(Mp4Writer::new(path, fps, image, &job.ffmpeg)?),
+            }),
+        };
+        match film {
+            Film::Gif(writer) => writer.push(image)?,
+            Film::Mp4(writer) => writer.push(image)?,
+        }
+        done.size = [image.width(), image.height()];
+        done.frames += 1;
+    }
+    match film.ok_or(RenderError::NoFrames)? {
+        Film::Gif(writer) => writer.finish()?,
+        Film::Mp4(writer) => writer.finish()?,
+    }
+    Ok(done)
+}

@@ -1,0 +1,35 @@
+//! Frames to pictures and films.
+//!
+//! [`Renderer`] draws a [`Snapshot`](crate::snapshot::Snapshot), [`encode`] writes pictures to files,
+//! [`run`] does both for all chosen frames of a run.
+
+pub mod color;
+pub mod encode;
+
+mod bodies;
+mod error;
+mod field;
+mod fluids;
+mod image;
+mod job;
+mod labels;
+mod options;
+mod output;
+mod renderer;
+mod scalar;
+mod select;
+mod survey;
+mod text;
+mod theme;
+mod view;
+mod walls;
+
+pub use error::RenderError;
+pub use image::Image;
+pub use job::{Existing, RenderJob, Rendered, run};
+pub use options::{Background, ColorBy, Range, RenderOptions, Style, TimeStamp};
+pub use output::{Numbered, Output, plan_output};
+pub use renderer::Renderer;
+pub use select::Selection;
+pub use survey::Survey;
+pub use view::View;

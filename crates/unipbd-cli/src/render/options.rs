@@ -1,0 +1,128 @@
+use super::view::View;
+
+/// What the colour of a particle shows.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ColorBy {
+    /// The colour of its material.
+    #[default]
+    Material,
+    /// Its speed [m/s].
+    Speed,
+    /// Its density error [%].
+    Density,
+    /// Its temperature above the surroundings.
+    Temperature,
+}
+
+impl ColorBy {
+    /// All choices.
+    pub const ALL: [ColorBy; 4] = [ColorBy::Material, ColorBy::Speed, ColorBy::Density, ColorBy::Temperature];
+
+    /// The word for it on the command line.
+    pub const fn name(self) -> &'static str {
+        match self {
+            ColorBy::Material => "material",
+            ColorBy::Speed => "speed",
+            ColorBy::Density => "density",
+            ColorBy::Temperature => "temperature",
+        }
+    }
+
+    /// The column it needs, by the name `--fields` has for it.
+    pub const fn field(self) -> Option<&'static str> {
+        match self {
+            ColorBy::Material => None,
+            ColorBy::Speed => Some("velocity"),
+            ColorBy::Density => Some("density"),
+            ColorBy::Temperature => Some("temperature"),
+        }
+    }
+
+    /// Title of the colour bar, with the unit.
+    pub(super) const fn label(self) -> &'static str {
+        match self {
+            ColorBy::Material => "",
+            ColorBy::Speed => "speed [m/s]",
+            ColorBy::Density => "density error [%]",
+            ColorBy::Temperature => "temperature",
+        }
+    }
+}
+
+/// How liquids and other carriers are drawn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Style {
+    /// A smooth filled body with a bright edge.
+    #[default]
+    Surface,
+    /// A disc per particle.
+    Discs,
+}
+
+/// The ground colour of a picture.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Background {
+    /// Nearly black, for screens.
+    #[default]
+    Dark,
+    /// Nearly white, for paper.
+    Light,
+}
+
+/// The numbers at the two ends of the colour map, in the unit of the colour bar.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub enum Range {
+    /// Chosen from the frames drawn so far; widens where a later frame needs it.
+    #[default]
+    Automatic,
+    /// Fixed.
+    Fixed {
+        /// Number at the lower end.
+        min: f64,
+        /// Number at the upper end.
+        max: f64,
+    },
+}
+
+/// Whether a picture carries the simulated time.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum TimeStamp {
+    /// In the upper left corner.
+    #[default]
+    Shown,
+    /// Not at all.
+    Hidden,
+}
+
+/// How pictures look.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RenderOptions {
+    /// Width in pixels, rounded to an even number; the height follows from the view.
+    pub width: u32,
+    /// What colours show.
+    pub color_by: ColorBy,
+    /// How carriers are drawn.
+    pub style: Style,
+    /// Ground colour.
+    pub background: Background,
+    /// Ends of the colour map.
+    pub range: Range,
+    /// Region to show; left out, that of the scene, or else one fitted to the first frame drawn.
+    pub view: Option<View>,
+    /// Whether to show the time.
+    pub time_stamp: TimeStamp,
+}
+
+impl Default for RenderOptions {
+    fn default() -> Self {
+        RenderOptions {
+            width: 960,
+            color_by: ColorBy::default(),
+            style: Style::default(),
+            background: Background::default(),
+            range: Range::default(),
+            view: None,
+            time_stamp: TimeStamp::default(),
+        }
+    }
+}

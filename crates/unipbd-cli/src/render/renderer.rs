@@ -1,0 +1,124 @@
+use unipbd_core::phase::Phase;
+
+use super::color::Rgb;
+use super::error::RenderError;
+use super::field::Field;
+use super::fluids::{Scope, liquid_colors, material_colors};
+use super::image::Image;
+use super::options::{RenderOptions, Style, TimeStamp};
+use super::scalar::Scalar;
+use super::theme::Theme;
+use super::view::{Camera, View};
+use super::walls::Wall;
+use super::{bodies, labels};
+use crate::snapshot::{Setting, Snapshot};
+
+/// What is settled once the view is known.
+struct Canvas {
+    camera: Camera,
+    walls: Vec<Wall>,
+    image: Image,
+}
+
+/// Draws frames of one run, keeping its buffers from frame to frame.
+pub struct Renderer {
+    setting: Setting,
+    options: RenderOptions,
+    theme: Theme,
+    colors: Vec<Rgb>,
+    liquids: Vec<[f32; 3]>,
+    scalar: Option<Scalar>,
+    canvas: Option<Canvas>,
+    field: Field,
+}
+
+impl Renderer {
+    /// A renderer for the frames of a run.
+    pub fn new(setting: &Setting, options: RenderOptions) -> Renderer {
+        let theme = Theme::of(options.background);
+        Renderer {
+            colors: material_colors(setting, &theme),
+            liquids: liquid_colors(setting, &theme),
+            scalar: Scalar::new(options.color_by, options.range),
+            setting: setting.clone(),
+            options,
+            theme,
+            canvas: None,
+            field: Field::default(),
+        }
+    }
+
+    /// Draws a frame; the picture is valid until the next one is drawn.
+    pub fn draw(&mut self, frame: &Snapshot) -> Result<&Image, RenderError> {
+        if let Some(scalar) = &mut self.scalar {
+            scalar.read(frame)?;
+        }
+        let scale = self.scale();
+        let mut canvas = match self.canvas.take() {
+            Some(canvas) => canvas,
+            None => self.new_canvas(frame)?,
+        };
+        canvas.image.fill(self.theme.background);
+        self.draw_particles(&mut canvas, frame);
+        self.draw_solids(&mut canvas, frame);
+        if let Some(scalar) = &self.scalar {
+            labels::color_bar(&mut canvas.image, scalar, canvas.camera.size[1], &self.theme, scale);
+        }
+        if self.options.time_stamp == TimeStamp::Shown {
+            labels::time_stamp(&mut canvas.image, frame.time, &self.theme, scale);
+        }
+        Ok(&self.canvas.insert(canvas).image)
+    }
+
+    /// Size of lines and letters relative to a picture 960 pixels wide.
+    fn scale(&self) -> f32 {
+        (self.options.width as f32 / 960.0).clamp(0.55, 4.0)
+    }
+
+    fn new_canvas(&self, frame: &Snapshot) -> Result<Canvas, RenderError> {
+        let of_scene = self.setting.view.map(|(min, max)| View { min, max });
+        let view = self.options.view.or(of_scene).unwrap_or_else(|| View::fit(&self.setting, [frame]));
+        let camera = Camera::new(view, self.options.width)?;
+        let strip = if self.scalar.is_some() { labels::strip_height(self.scale()) } else { 0 };
+        let image = Image::new(camera.size[0], camera.size[1].saturating_add(strip), self.theme.background)?;
+        let walls = self.setting.walls.iter().filter_map(|outline| Wall::new(outline, &camera)).collect();
+        Ok(Canvas { camera, walls, image })
+    }
+
+    fn draw_particles(&mut self, canvas: &mut Canvas, frame: &Snapshot) {
+        let Canvas { camera, walls, image } = canvas;
+        let spacing = camera.length(self.setting.spacing);
+        let (colors, liquids) = (&self.colors[..], &self.liquids[..]);
+        let scope = Scope { frame, camera, theme: &self.theme, colors, liquids, walls, spacing };
+        let field = &mut self.field;
+        let has_shapes = !frame.bodies.is_empty();
+        match (&self.scalar, self.options.style) {
+            (Some(scalar), Style::Surface) => scope.scalar_surface(image, field, scalar),
+            (Some(scalar), Style::Discs) => scope.scalar_discs(image, scalar),
+            (None, style) => {
+                match style {
+                    Style::Surface => scope.gas(image, field),
+                    Style::Discs => scope.discs(image, |phase| phase == Phase::Gas, 0.16),
+                }
+                scope.smoke(image, field);
+                match style {
+                    Style::Surface => scope.surface(image, field, |phase| phase == Phase::Liquid),
+                    Style::Discs => scope.discs(image, |phase| phase == Phase::Liquid, 1.0),
+                }
+                scope.discs(image, |phase| phase == Phase::Solid, 1.0);
+            }
+        }
+        scope.discs(image, |phase| phase == Phase::Rigid && !has_shapes, 1.0);
+    }
+
+    fn draw_solids(&self, canvas: &mut Canvas, frame: &Snapshot) {
+        let Canvas { camera, walls, image } = canvas;
+        let [scale, spacing] = [self.scale(), camera.length(self.setting.spacing)];
+        for (index, body) in frame.bodies.iter().enumerate() {
+            bodies::draw(image, body, bodies::color(body, index, &self.theme), camera, spacing, scale);
+        }
+        for wall in walls {
+            wall.draw(image, camera, &self.theme, spacing, scale);
+        }
+    }
+}

@@ -1,0 +1,112 @@
+//! Scene files: TOML read into a [`Scene`], with every problem of the file named at once.
+//!
+//! The text is parsed into a tree that keeps positions, overrides are laid over it, the tree is
+//! compared with the JSON schema of [`Scene`], and what remains is checked for meaning by
+//! [`Scene::validate`]. A fault found early is replaced by a value that raises no further
+//! complaints, so that only causes are reported.
+
+mod diagnostic;
+mod overrides;
+mod repair;
+mod schema;
+mod source;
+mod syntax;
+mod tree;
+
+use std::fs::File;
+use std::io::Read;
+use std::path::{Path, PathBuf};
+
+use serde::Deserialize;
+use sha2::{Digest, Sha256};
+use toml::de::DeTable;
+use unipbd_core::scene::{KeyPath, Problem, Scene};
+
+pub use diagnostic::{Diagnostic, Origin, SceneFileError};
+pub use overrides::{InvalidOverride, Override};
+pub use schema::schema;
+
+use repair::Repair;
+use source::{Fault, Sources};
+use tree::Node;
+
+/// Larger files are refused unread [byte].
+const LARGEST_FILE: u64 = 4 << 20;
+
+/// A scene and the text it came from.
+#[derive(Clone, Debug)]
+pub struct LoadedScene {
+    /// The scene, with the overrides, free of problems.
+    pub scene: Scene,
+    /// The file as read, without the overrides.
+    pub text: String,
+    /// Where the file is.
+    pub path: PathBuf,
+    /// SHA-256 of the text, in hexadecimal digits.
+    pub sha256: String,
+    /// The overrides, as given.
+    pub overrides: Vec<Override>,
+}
+
+/// Reads a scene file and lays the overrides over it.
+pub fn load(path: impl AsRef<Path>, overrides: &[Override]) -> Result<LoadedScene, SceneFileError> {
+    let path = path.as_ref();
+    let name = path.display().to_string();
+    let mut bytes = Vec::new();
+    let read = File::open(path).and_then(|file| file.take(LARGEST_FILE + 1).read_to_end(&mut bytes));
+    read.map_err(|error| SceneFileError::Io { path: path.to_owned(), error })?;
+    if bytes.len() as u64 > LARGEST_FILE {
+        let message = format!("the file is larger than {} MiB", LARGEST_FILE >> 20);
+        return Err(SceneFileError::whole_file(&name, message, "a scene file is a few kilobytes of TOML text"));
+    }
+    let text = String::from_utf8(bytes).map_err(|error| source::not_text(&name, &error))?;
+    let loaded = parse(&text, &name, overrides)?;
+    Ok(LoadedScene { path: path.to_owned(), ..loaded })
+}
+
+/// Reads a scene from text; `file_name` stands in messages.
+pub fn parse(text: &str, file_name: &str, overrides: &[Override]) -> Result<LoadedScene, SceneFileError> {
+    let sources = Sources::new(file_name, text, overrides);
+    let scene = read(&sources, overrides).map_err(|faults| sources.error(faults))?;
+    Ok(LoadedScene {
+        scene,
+        text: text.to_owned(),
+        path: PathBuf::from(file_name),
+        sha256: Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect(),
+        overrides: overrides.to_vec(),
+    })
+}
+
+fn read(sources: &Sources, overrides: &[Override]) -> Result<Scene, Vec<Fault>> {
+    let schema = schema();
+    let (table, errors) = DeTable::parse_recoverable(sources.text());
+    let mut faults = syntax::faults(sources.text(), table.get_ref(), &errors);
+    let mut tree = Node::from_table(&table);
+    for (index, change) in overrides.iter().enumerate() {
+        faults.extend(overrides::apply(change, sources.start_of_override(index), &schema, &mut tree).err());
+    }
+    let mut repair = Repair::new(&schema, sources);
+    repair.run(&mut tree);
+    if !errors.is_empty() {
+        // Text near a syntax error may be read wrongly, and keys may be lost with it.
+        faults.extend(repair.faults.into_iter().filter(|fault| !fault.may_follow_from_syntax(sources)));
+        return Err(faults);
+    }
+    faults.append(&mut repair.faults);
+    match Scene::deserialize(tree.to_toml()) {
+        Ok(scene) => {
+            let problems = scene.validate().0.into_iter();
+            let causes = problems.filter(|problem| !repair.explains(problem, &tree));
+            faults.extend(causes.map(|problem| locate(problem, &tree)));
+            if faults.is_empty() { Ok(scene) } else { Err(faults) }
+        }
+        Err(error) if faults.is_empty() => Err(vec![Fault::new(KeyPath::default(), None, error.message())]),
+        Err(_) => Err(faults),
+    }
+}
+
+/// Finds the place of a problem in the file: its key, or the nearest table around it.
+fn locate(problem: Problem, tree: &Node) -> Fault {
+    let span = (!problem.path.0.is_empty()).then(|| tree.nearest_span(&problem.path)).flatten();
+    Fault { path: problem.path, span, message: problem.message, hint: problem.hint, kind: source::FaultKind::Meaning }
+}

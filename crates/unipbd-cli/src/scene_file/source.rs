@@ -1,0 +1,173 @@
+//! Positions: the file and the overrides as one long text.
+
+use std::ops::Range;
+use std::string::FromUtf8Error;
+
+use unipbd_core::scene::KeyPath;
+
+use super::diagnostic::{Diagnostic, Origin, SceneFileError};
+use super::overrides::Override;
+
+/// What kind of check found a fault.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FaultKind {
+    Syntax,
+    /// A key or a value that does not belong where it is.
+    Misfit,
+    Missing,
+    Meaning,
+}
+
+/// A problem with its place in the long text; without one it concerns the whole file.
+#[derive(Clone, Debug)]
+pub(super) struct Fault {
+    pub(super) path: KeyPath,
+    pub(super) span: Option<Range<usize>>,
+    pub(super) message: String,
+    pub(super) hint: Option<String>,
+    pub(super) kind: FaultKind,
+}
+
+impl Fault {
+    pub(super) fn new(path: KeyPath, span: Option<Range<usize>>, message: impl Into<String>) -> Self {
+        Fault { path, span, message: message.into(), hint: None, kind: FaultKind::Misfit }
+    }
+
+    #[must_use]
+    pub(super) fn hint(mut self, hint: impl Into<String>) -> Self {
+        self.hint = Some(hint.into());
+        self
+    }
+
+    #[must_use]
+    pub(super) fn kind(mut self, kind: FaultKind) -> Self {
+        self.kind = kind;
+        self
+    }
+
+    /// Whether the fault may be but a consequence of a syntax error somewhere.
+    pub(super) fn may_follow_from_syntax(&self, sources: &Sources) -> bool {
+        let in_file = self.span.as_ref().is_none_or(|span| span.start <= sources.text().len());
+        self.kind != FaultKind::Misfit || in_file && sources.has_many_lines(self.span.clone())
+    }
+}
+
+/// The file, then each override, one behind the other.
+pub(super) struct Sources<'a> {
+    file_name: &'a str,
+    parts: Vec<(usize, &'a str)>,
+}
+
+impl<'a> Sources<'a> {
+    pub(super) fn new(file_name: &'a str, text: &'a str, overrides: &'a [Override]) -> Self {
+        let mut start = 0;
+        let texts = std::iter::once(text).chain(overrides.iter().map(|change| change.text()));
+        let place = |part: &'a str| {
+            let place = (start, part);
+            start += part.len() + 1;
+            place
+        };
+        let parts = texts.map(place).collect();
+        Sources { file_name, parts }
+    }
+
+    /// The text of the file.
+    pub(super) fn text(&self) -> &'a str {
+        self.parts[0].1
+    }
+
+    pub(super) fn start_of_override(&self, index: usize) -> usize {
+        self.parts[index + 1].0
+    }
+
+    /// The text at a span, as written.
+    pub(super) fn excerpt(&self, span: &Range<usize>) -> &'a str {
+        let (part, local) = self.part_at(span.start);
+        let (start, text) = self.parts[part];
+        text.get(local..span.end.saturating_sub(start).max(local)).unwrap_or("")
+    }
+
+    fn has_many_lines(&self, span: Option<Range<usize>>) -> bool {
+        span.is_none_or(|span| self.excerpt(&span).contains('\n'))
+    }
+
+    /// Number of the part that holds an offset, and the offset within it.
+    fn part_at(&self, offset: usize) -> (usize, usize) {
+        let part = self.parts.partition_point(|(start, _)| *start <= offset).saturating_sub(1);
+        (part, (offset - self.parts[part].0).min(self.parts[part].1.len()))
+    }
+
+    /// Sorts faults by position and makes an error of them.
+    pub(super) fn error(&self, mut faults: Vec<Fault>) -> SceneFileError {
+        faults.sort_by_key(|fault| fault.span.as_ref().map_or(usize::MAX, |span| span.start));
+        let mut problems: Vec<Diagnostic> = Vec::new();
+        for fault in faults {
+            let problem = self.diagnostic(fault);
+            if problems.last() != Some(&problem) {
+                problems.push(problem);
+            }
+        }
+        SceneFileError::Invalid { file: self.file_name.to_owned(), problems }
+    }
+
+    fn diagnostic(&self, fault: Fault) -> Diagnostic {
+        let blank = Diagnostic {
+            origin: Origin::File(self.file_name.to_owned()),
+            line: 1,
+            column: 1,
+            source_line: String::new(),
+            caret: 0..0,
+            key: fault.path.to_string(),
+            message: fault.message,
+            hint: fault.hint,
+        };
+        let Some(span) = fault.span else { return blank };
+        let (part, offset) = self.part_at(span.start);
+        let (start, text) = self.parts[part];
+        let place = Place::of(text, offset, span.end.saturating_sub(start));
+        let origin = if part == 0 { blank.origin } else { Origin::Override(text.to_owned()) };
+        Diagnostic {
+            origin,
+            line: place.line,
+            column: place.caret.start + 1,
+            source_line: place.text,
+            caret: place.caret,
+            ..blank
+        }
+    }
+}
+
+/// A stretch of one line.
+struct Place {
+    line: usize,
+    text: String,
+    caret: Range<usize>,
+}
+
+impl Place {
+    /// The line that holds byte `start` of a text, with the characters from there to byte `end` marked.
+    fn of(text: &str, start: usize, end: usize) -> Place {
+        let start = (0..=start.min(text.len())).rev().find(|&byte| text.is_char_boundary(byte)).unwrap_or(0);
+        let begin = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
+        let line = text[..begin].matches('\n').count() + 1;
+        let begin = if text[begin..].starts_with('\u{feff}') { begin + '\u{feff}'.len_utf8() } else { begin };
+        let stop = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
+        let content = text.get(begin..stop).unwrap_or("").trim_end_matches('\r');
+        let characters = |to: usize| text.get(begin..to.max(begin)).map_or(0, |part| part.chars().count());
+        let length = content.chars().count();
+        let from = characters(start).min(length);
+        let end = (end..text.len()).find(|&byte| text.is_char_boundary(byte)).unwrap_or(text.len());
+        Place { line, text: content.to_owned(), caret: from..characters(end.min(stop)).clamp(from, length.max(from)) }
+    }
+}
+
+/// The error for a file that is no UTF-8 text.
+pub(super) fn not_text(file_name: &str, error: &FromUtf8Error) -> SceneFileError {
+    let valid = error.utf8_error().valid_up_to();
+    let lossy = String::from_utf8_lossy(error.as_bytes());
+    let byte = error.as_bytes()[valid];
+    let sources = Sources::new(file_name, &lossy, &[]);
+    let end = valid + char::REPLACEMENT_CHARACTER.len_utf8();
+    let fault = Fault::new(KeyPath::default(), Some(valid..end), format!("not UTF-8 text: byte 0x{byte:02x}"));
+    sources.error(vec![fault.hint("save the file as UTF-8")])
+}

@@ -1,0 +1,5 @@
+//! Logs: written the same every time, read back as they were, readable after a crash.
+
+mod damage;
+mod round_trip;
+mod support;

@@ -1,0 +1,140 @@
+//! Liquids, gases, smokes, and the names by which others refer to them.
+
+use std::collections::BTreeMap;
+
+use super::checker::{Allowed, Checker};
+use crate::phase::{MaterialIndex, Phase};
+use crate::scene::{KeyPath, MaterialRef, Scene, nearest};
+
+const VISCOSITY_HINT: &str = "the fraction of velocity differences smoothed per substep";
+const DENSITY_HINT: &str = "mass per area in kg/m^2, such as 1000.0 for water or 1.2 for air";
+
+pub(super) fn check(checker: &mut Checker) {
+    for (index, liquid) in checker.scene.liquid.iter().enumerate() {
+        let path = KeyPath::entry("liquid", index);
+        checker.range(path.then("density"), liquid.density, Allowed::Positive, DENSITY_HINT);
+        checker.range(path.then("viscosity"), liquid.viscosity, Allowed::Between(0.0, 1.0), VISCOSITY_HINT);
+    }
+    check_gases(checker);
+    for (index, smoke) in checker.scene.smoke.iter().enumerate() {
+        check_lifetime(checker, &KeyPath::entry("smoke", index), smoke.lifetime);
+    }
+    let mut seen = BTreeMap::new();
+    for (path, material) in with_paths(checker.scene) {
+        check_name(checker, &path, material.name(), &mut seen);
+        check_color(checker, &path, material.color());
+    }
+    let (count, most) = (checker.scene.materials().count(), usize::from(MaterialIndex::MAX));
+    if count > most {
+        checker.problems.add(KeyPath::default(), format!("has {count} materials, at most {most} are possible"));
+    }
+}
+
+fn check_gases(checker: &mut Checker) {
+    for (index, gas) in checker.scene.gas.iter().enumerate() {
+        let path = KeyPath::entry("gas", index);
+        checker.range(path.then("density"), gas.density, Allowed::Positive, DENSITY_HINT);
+        checker.range(path.then("drag"), gas.drag, Allowed::NotNegative, "a rate in 1/s; 0 is no drag");
+        checker.range(path.then("conductivity"), gas.conductivity, Allowed::NotNegative, "a diffusivity in m^2/s");
+        checker.range(path.then("viscosity"), gas.viscosity, Allowed::Between(0.0, 1.0), VISCOSITY_HINT);
+        check_lifetime(checker, &path, gas.lifetime);
+        if let Some(radius) = gas.keep_radius {
+            let hint = "in metres, at least as large as the sheath is thick; left out, all gas stays";
+            checker.range(path.then("keep_radius"), radius, Allowed::Positive, hint);
+        }
+        checker.range(path.then("keep_age"), gas.keep_age, Allowed::NotNegative, "in seconds");
+    }
+}
+
+fn check_lifetime(checker: &mut Checker, path: &KeyPath, lifetime: Option<f64>) {
+    if let Some(lifetime) = lifetime {
+        checker.range(path.then("lifetime"), lifetime, Allowed::Positive, "in seconds; left out, particles stay");
+    }
+}
+
+fn check_name(checker: &mut Checker, path: &KeyPath, name: &str, seen: &mut BTreeMap<String, KeyPath>) {
+    if name.trim().is_empty() {
+        checker.problem(path.then("name"), "a material needs a name", "add a line such as name = \"water\"");
+    } else if let Some(first) = seen.get(name) {
+        let message = format!("the name \"{name}\" is taken by {first}");
+        checker.problem(path.then("name"), message, "names of liquids, gases and smokes must differ");
+    } else {
+        seen.insert(name.to_owned(), path.clone());
+    }
+}
+
+fn check_color(checker: &mut Checker, path: &KeyPath, color: Option<&str>) {
+    let Some(color) = color else { return };
+    let digits = color.strip_prefix('#').filter(|digits| digits.len() == 6);
+    if !digits.is_some_and(|digits| digits.bytes().all(|byte| byte.is_ascii_hexdigit())) {
+        let message = format!("\"{}\" is not a colour of the form \"#rrggbb\"", excerpt(color));
+        checker.problem(
+            path.then("color"),
+            message,
+            "such as \"#3b82f6\": two hexadecimal digits each for red, green, blue",
+        );
+    }
+}
+
+/// The phases a place of the scene may name, in words: `[Liquid, Gas]` is "a liquid or a gas".
+fn in_words(phases: &[Phase]) -> String {
+    let words: Vec<String> = phases.iter().map(|phase| format!("a {}", phase.name())).collect();
+    words.join(" or ")
+}
+
+/// Checks that `name` is a material of one of these phases.
+pub(super) fn check_reference(checker: &mut Checker, path: KeyPath, name: &str, wanted: &[Phase]) {
+    if name.trim().is_empty() {
+        return checker.problem(path, "names no material", "write the name of a material of this scene");
+    }
+    if let Some((_, material)) = checker.scene.material(name) {
+        if !wanted.contains(&material.phase()) {
+            let message = format!("\"{}\" is a {}, not {}", excerpt(name), material.phase().name(), in_words(wanted));
+            checker.problem(path, message, wrong_phase_hint(checker.scene, wanted));
+        }
+        return;
+    }
+    // A material whose own name is at fault may be the one that is meant.
+    if checker.scene.materials().any(|material| material.name().trim().is_empty()) {
+        return;
+    }
+    let hint = unknown_hint(checker.scene, name, wanted);
+    checker.problem(path, format!("there is no material \"{}\"", excerpt(name)), hint);
+}
+
+fn unknown_hint(scene: &Scene, name: &str, wanted: &[Phase]) -> String {
+    let names: Vec<&str> = scene.materials().map(|material| material.name()).collect();
+    if let Some(near) = nearest(name, names.iter().copied()) {
+        return format!("did you mean \"{near}\"?");
+    }
+    if names.is_empty() {
+        let table = wanted.first().map_or("liquid", |phase| phase.name());
+        return format!("add a table [[{table}]] with name = \"{}\"", excerpt(name));
+    }
+    list("the materials are", &names)
+}
+
+fn wrong_phase_hint(scene: &Scene, wanted: &[Phase]) -> String {
+    let fitting = scene.materials().filter(|material| wanted.contains(&material.phase()));
+    let names: Vec<&str> = fitting.map(|material| material.name()).collect();
+    if names.is_empty() { format!("the scene has no {}", wanted[0].name()) } else { list("possible are", &names) }
+}
+
+fn list(start: &str, names: &[&str]) -> String {
+    let shown: Vec<String> = names.iter().take(8).map(|name| format!("\"{}\"", excerpt(name))).collect();
+    let more = if names.len() > shown.len() { ", ..." } else { "" };
+    format!("{start} {}{more}", shown.join(", "))
+}
+
+/// The start of a word from the scene, short enough for a message.
+pub(super) fn excerpt(word: &str) -> String {
+    let clean = |letter: char| if letter.is_control() { ' ' } else { letter };
+    let start: String = word.chars().take(40).map(clean).collect();
+    if start.chars().count() < word.chars().count() { start + "..." } else { start }
+}
+
+fn with_paths(scene: &Scene) -> Vec<(KeyPath, MaterialRef<'_>)> {
+    let counts = [("liquid", scene.liquid.len()), ("gas", scene.gas.len()), ("smoke", scene.smoke.len())];
+    let paths = counts.into_iter().flat_map(|(kind, count)| (0..count).map(move |index| KeyPath::entry(kind, index)));
+    paths.zip(scene.materials()).collect()
+}

@@ -1,0 +1,38 @@
+//! Semantic checks: values that parse but make no sense.
+//!
+//! One file per kind of thing; each lists only causes, never what follows from them: a comparison
+//! with a value that is itself at fault is left out.
+
+mod checker;
+mod environment;
+mod finite;
+mod geometry;
+mod materials;
+mod overlap;
+mod placement;
+mod settings;
+mod size;
+mod sources;
+mod walls;
+
+use super::{Problems, Scene};
+use checker::Checker;
+
+impl Scene {
+    /// Lists everything that is wrong with the scene; empty when it can be built.
+    pub fn validate(&self) -> Problems {
+        let mut checker = Checker::new(self);
+        finite::check(&mut checker);
+        settings::check(&mut checker);
+        environment::check(&mut checker);
+        materials::check(&mut checker);
+        sources::check(&mut checker);
+        walls::check(&mut checker);
+        size::check(&mut checker);
+        if checker.size_is_sane {
+            overlap::check(&mut checker);
+            placement::check(&mut checker);
+        }
+        checker.problems
+    }
+}

@@ -1,0 +1,122 @@
+//! Blocks, discs and emitters by themselves.
+
+use std::collections::BTreeMap;
+
+use super::checker::{Allowed, Checker, number, rounded};
+use super::materials::{check_reference, excerpt};
+use crate::phase::Phase;
+use crate::scene::{Emitter, KeyPath, Substeps};
+
+const FLUIDS: [Phase; 2] = [Phase::Liquid, Phase::Gas];
+const JITTER_HINT: &str = "a fraction of the spacing, such as 0.1";
+
+pub(super) fn check(checker: &mut Checker) {
+    let scene = checker.scene;
+    for (index, block) in scene.block.iter().enumerate() {
+        let path = KeyPath::entry("block", index);
+        check_reference(checker, path.then("material"), &block.material, &FLUIDS);
+        if checker.corners(&path, block.min, block.max) {
+            let [width, height] = [0, 1].map(|axis| block.max[axis] - block.min[axis]);
+            let (thickness, what) = if width < height { (width, "the width") } else { (height, "the height") };
+            checker.at_least_one_spacing(path.then("max"), thickness, what);
+        }
+        check_filling(checker, &path, block.velocity, block.jitter);
+    }
+    for (index, disc) in scene.disc.iter().enumerate() {
+        let path = KeyPath::entry("disc", index);
+        check_reference(checker, path.then("material"), &disc.material, &FLUIDS);
+        if checker.range(path.then("radius"), disc.radius, Allowed::Positive, "a length in metres") {
+            checker.at_least_one_spacing(path.then("radius"), disc.radius, "the radius");
+        }
+        check_filling(checker, &path, disc.velocity, disc.jitter);
+    }
+    check_emitters(checker);
+    if scene.block.is_empty() && scene.disc.is_empty() && scene.emitter.is_empty() {
+        let message = "the scene has no particles: neither [[block]] nor [[disc]] nor [[emitter]]";
+        checker.problem(KeyPath::default(), message, "add a [[block]] with material, min and max, and its [[liquid]]");
+    }
+}
+
+fn check_filling(checker: &mut Checker, path: &KeyPath, velocity: [f64; 2], jitter: f64) {
+    checker.range(path.then("jitter"), jitter, Allowed::Between(0.0, 0.5), JITTER_HINT);
+    check_speed(checker, path.then("velocity"), velocity[0].hypot(velocity[1]));
+}
+
+fn check_emitters(checker: &mut Checker) {
+    let mut names = BTreeMap::new();
+    for (index, emitter) in checker.scene.emitter.iter().enumerate() {
+        let path = KeyPath::entry("emitter", index);
+        if let Some(first) = (!emitter.name.is_empty()).then(|| names.insert(&emitter.name, index)).flatten() {
+            let message = format!("the name \"{}\" is taken by emitter[{first}]", excerpt(&emitter.name));
+            checker.problem(path.then("name"), message, "names of emitters must differ");
+        }
+        check_reference(checker, path.then("material"), &emitter.material, &FLUIDS);
+        check_nozzle(checker, &path, emitter);
+        check_sheath_and_smoke(checker, &path, emitter);
+        check_schedule(checker, &path, emitter);
+    }
+}
+
+fn check_nozzle(checker: &mut Checker, path: &KeyPath, emitter: &Emitter) {
+    checker.direction(path.then("direction"), emitter.direction, "the way the flow goes, such as [0.0, 1.0] for up");
+    if checker.range(path.then("width"), emitter.width, Allowed::Positive, "the width of the face in metres") {
+        checker.at_least_one_spacing(path.then("width"), emitter.width, "the width");
+    }
+    let hint = "in m/s; turn `direction` around for a flow the other way";
+    if checker.range(path.then("speed"), emitter.speed, Allowed::Positive, hint) {
+        check_speed(checker, path.then("speed"), emitter.speed);
+    }
+    checker.range(path.then("jitter"), emitter.jitter, Allowed::Between(0.0, 0.5), JITTER_HINT);
+}
+
+fn check_sheath_and_smoke(checker: &mut Checker, path: &KeyPath, emitter: &Emitter) {
+    if let Some(sheath) = &emitter.sheath {
+        let path = path.then("sheath");
+        if checker.range(path.then("thickness"), sheath.thickness, Allowed::Positive, "leave out `sheath` for none") {
+            checker.at_least_one_spacing(path.then("thickness"), sheath.thickness, "the thickness");
+        }
+        if let Some(speed) = sheath.speed
+            && checker.range(path.then("speed"), speed, Allowed::Positive, "left out, the speed of the core")
+        {
+            check_speed(checker, path.then("speed"), speed);
+        }
+    }
+    if let Some(smoke) = &emitter.smoke {
+        let path = path.then("smoke");
+        check_reference(checker, path.then("material"), &smoke.material, &[Phase::Smoke]);
+        let markers = f64::from(smoke.per_particle);
+        let hint = "3 or 4 look smooth; leave out `smoke` for none";
+        checker.range(path.then("per_particle"), markers, Allowed::Between(1.0, 1000.0), hint);
+    }
+}
+
+fn check_schedule(checker: &mut Checker, path: &KeyPath, emitter: &Emitter) {
+    checker.range(path.then("start"), emitter.start, Allowed::NotNegative, "in seconds; a run starts at 0");
+    if let Some(stop) = emitter.stop
+        && stop <= emitter.start
+    {
+        let message = format!("must come after the start at {} s, found {} s", number(emitter.start), number(stop));
+        checker.problem(path.then("stop"), message, "leave it out for an emitter that never stops");
+    }
+}
+
+/// Notes a speed at which a particle would leap over its own kernel in one substep.
+fn check_speed(checker: &mut Checker, path: KeyPath, speed: f64) {
+    let scene = checker.scene;
+    let (count, cure) = match scene.solver.substeps {
+        Substeps::Auto => (scene.solver.max_substeps, "`solver.max_substeps`"),
+        Substeps::Fixed(count) => (count, "`solver.substeps`"),
+    };
+    let Some(spacing) = checker.spacing else { return };
+    let leap = speed / scene.fps / f64::from(count) / spacing;
+    let settings_are_fine = scene.fps >= 1.0 && count >= 1 && scene.solver.kernel_radius >= 1.5;
+    if settings_are_fine && leap.is_finite() && leap > scene.solver.kernel_radius {
+        let message = format!(
+            "{} m/s is too fast: {} spacings in one substep ({count} substeps per frame, {} frames per second)",
+            rounded(speed),
+            rounded(leap),
+            number(scene.fps)
+        );
+        checker.problem(path, message, format!("lower the speed, or raise {cure} or `fps`"));
+    }
+}
