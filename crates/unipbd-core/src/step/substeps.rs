@@ -80,7 +80,7 @@ mod tests {
     fn substeps_grow_with_the_square_root_of_the_depth() {
         let at = |depth: f64| rule().choose(1.0 / 60.0, Demand { speed: 0.0, pressure: 9.81 * depth }).substeps;
         assert_eq!(at(3.0), 8);
-        assert!((f64::from(at(12.0)) / f64::from(at(3.0)) - 2.0).abs() < 0.1);
+        assert!((f64::from(at(120.0)) / f64::from(at(30.0)) - 2.0).abs() < 0.1);
     }
 
     #[test]
