@@ -80,7 +80,7 @@ pub fn parse(text: &str, file_name: &str, overrides: &[Override]) -> Result<Load
 fn read(sources: &Sources, overrides: &[Override]) -> Result<Scene, Vec<Fault>> {
     let schema = schema();
     let (table, errors) = DeTable::parse_recoverable(sources.text());
-    let mut faults = syntax::faults(sources.text(), table.get_ref(), &errors);
+    let (mut faults, doubtful) = syntax::faults(sources.text(), table.get_ref(), &errors);
     let mut tree = Node::from_table(&table);
     for (index, change) in overrides.iter().enumerate() {
         faults.extend(overrides::apply(change, sources.start_of_override(index), &schema, &mut tree).err());
@@ -89,7 +89,7 @@ fn read(sources: &Sources, overrides: &[Override]) -> Result<Scene, Vec<Fault>> 
     repair.run(&mut tree);
     if !errors.is_empty() {
         // Text near a syntax error may be read wrongly, and keys may be lost with it.
-        faults.extend(repair.faults.into_iter().filter(|fault| !fault.may_follow_from_syntax(sources)));
+        faults.extend(repair.faults.into_iter().filter(|fault| !fault.may_follow_from_syntax(&doubtful)));
         return Err(faults);
     }
     faults.append(&mut repair.faults);

@@ -193,12 +193,13 @@ fn no_element(elements: &[Node], path: &KeyPath, word: &str, span: Range<usize>)
     let names: Vec<&str> = elements.iter().filter_map(name_of).filter(|name| !name.is_empty()).collect();
     let by_number = word.parse::<u64>().is_ok();
     let message = if by_number {
-        format!("there is no number {word}: {path} has {} entries, counted from 0", elements.len())
+        format!("there is no number {word}: {path} has length {}, counted from 0", elements.len())
     } else {
         format!("{path} has no entry named \"{word}\"")
     };
     let hint = match nearest(word, names.iter().copied()) {
         Some(near) if !by_number => format!("did you mean `{near}`?"),
+        _ if elements.len() == 1 => format!("the only one is {path}.0"),
         _ if names.is_empty() => format!("write a number from 0 to {}", elements.len().saturating_sub(1)),
         _ => format!("the names are {}", names.join(", ")),
     };

@@ -11,7 +11,7 @@ use super::source::{Fault, FaultKind, Sources};
 use super::tree::{Entry, Node, Value};
 
 /// Longest list of valid keys that a hint shows [characters].
-const LONGEST_LIST: usize = 160;
+const LONGEST_LIST: usize = 240;
 
 /// The comparison of a tree with the schema.
 pub(super) struct Repair<'a> {
@@ -60,6 +60,8 @@ impl<'a> Repair<'a> {
             Kind::Word(words) => self.check_word(node, schema, &words, path),
             Kind::Integer { least, most } => match node.value {
                 Value::Integer(value) if value >= least && value <= most => {}
+                Value::Integer(value) if value > most => self.too_large(node, schema, path, Some(most)),
+                Value::Float(value) if value > most as f64 => self.too_large(node, schema, path, Some(most)),
                 _ => self.misfit(node, schema, path),
             },
             Kind::Number => self.check_number(node, schema, path),
@@ -74,13 +76,16 @@ impl<'a> Repair<'a> {
         match node.value {
             Value::Integer(_) => {}
             Value::Float(value) if value.is_finite() || self.sources.excerpt(&node.span).contains(['n', 'N']) => {}
-            Value::Float(_) => {
-                let written = shortened(self.sources.excerpt(&node.span));
-                self.fault(path, &node.span, format!("the number {written} is too large"), None);
-                self.replace(node, schema, path);
-            }
+            Value::Float(_) => self.too_large(node, schema, path, None),
             _ => self.misfit(node, schema, path),
         }
+    }
+
+    fn too_large(&mut self, node: &mut Node, schema: &'a Schema, path: &KeyPath, most: Option<i64>) {
+        let written = shortened(self.sources.excerpt(&node.span));
+        let hint = most.map(|most| format!("at most {most}"));
+        self.fault(path, &node.span, format!("the number {written} is too large"), hint);
+        self.replace(node, schema, path);
     }
 
     /// Notes a value of the wrong kind and replaces it.
@@ -212,16 +217,16 @@ impl<'a> Repair<'a> {
                 entries.entry(near).or_insert(entry);
             }
         }
+        for (key, entry) in entries.iter_mut() {
+            if let Some(inner) = table.key(key).or(table.others) {
+                self.check(&mut entry.node, inner, &path.then(key));
+            }
+        }
         for key in table.required.iter().filter(|key| !entries.contains_key(**key)).collect::<Vec<_>>() {
             let inner = table.key(key).unwrap_or(&Schema::Null);
             self.missing(path.then(key), &span, inner);
             let node = Node { span: span.clone(), value: self.placeholder(inner, &span) };
             entries.insert((*key).to_owned(), Entry { key: span.clone(), node });
-        }
-        for (key, entry) in entries.iter_mut() {
-            if let Some(inner) = table.key(key).or(table.others) {
-                self.check(&mut entry.node, inner, &path.then(key));
-            }
         }
         self.drop_unusable(entries, table, path);
     }
@@ -300,7 +305,7 @@ impl<'a> Repair<'a> {
             Value::Array(elements) if elements.iter().all(|one| matches!(one.value, Value::Table(_))) => {
                 if elements.is_empty() { "an empty array".to_owned() } else { "an array of tables".to_owned() }
             }
-            Value::Array(elements) => format!("an array of {}", elements.len()),
+            Value::Array(elements) => format!("an array of length {}", elements.len()),
             Value::Table(_) => "a table".to_owned(),
         }
     }

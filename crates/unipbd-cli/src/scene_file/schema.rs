@@ -60,7 +60,9 @@ fn drop_null(object: &mut Map<String, Value>) {
             if let [Value::Object(only)] = options.as_slice() {
                 let only = only.clone();
                 object.remove(key);
-                only.into_iter().for_each(|(name, value)| drop(object.entry(name).or_insert(value)));
+                only.into_iter().for_each(|(name, value)| {
+                    object.entry(name).or_insert(value);
+                });
             }
         }
     }
@@ -191,9 +193,8 @@ pub(super) fn describe(root: &Value, schema: &Value) -> String {
         Kind::Table(_) => "a table".to_owned(),
         Kind::Array(array) => describe_array(root, &array),
         Kind::Number => "a number".to_owned(),
-        Kind::Integer { least: i64::MIN, most: i64::MAX } => "a whole number".to_owned(),
-        Kind::Integer { least, most: i64::MAX } => format!("a whole number of at least {least}"),
-        Kind::Integer { least, most } => format!("a whole number from {least} to {most}"),
+        Kind::Integer { least: 0, .. } => "a whole number, 0 or more".to_owned(),
+        Kind::Integer { .. } => "a whole number".to_owned(),
         Kind::Text => "a string".to_owned(),
         Kind::Word(words) => quoted(&words),
         Kind::Boolean => "true or false".to_owned(),

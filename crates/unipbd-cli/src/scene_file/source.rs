@@ -45,10 +45,11 @@ impl Fault {
         self
     }
 
-    /// Whether the fault may be but a consequence of a syntax error somewhere.
-    pub(super) fn may_follow_from_syntax(&self, sources: &Sources) -> bool {
-        let in_file = self.span.as_ref().is_none_or(|span| span.start <= sources.text().len());
-        self.kind != FaultKind::Misfit || in_file && sources.has_many_lines(self.span.clone())
+    /// Whether the fault may be but a consequence of a syntax error, given the stretches of text
+    /// that may be read wrongly.
+    pub(super) fn may_follow_from_syntax(&self, doubtful: &[Range<usize>]) -> bool {
+        let touches = |span: &Range<usize>| doubtful.iter().any(|d| span.start <= d.end && span.end >= d.start);
+        self.kind != FaultKind::Misfit || self.span.as_ref().is_none_or(touches)
     }
 }
 
@@ -85,10 +86,6 @@ impl<'a> Sources<'a> {
         let (part, local) = self.part_at(span.start);
         let (start, text) = self.parts[part];
         text.get(local..span.end.saturating_sub(start).max(local)).unwrap_or("")
-    }
-
-    fn has_many_lines(&self, span: Option<Range<usize>>) -> bool {
-        span.is_none_or(|span| self.excerpt(&span).contains('\n'))
     }
 
     /// Number of the part that holds an offset, and the offset within it.

@@ -7,14 +7,15 @@ use unipbd_core::scene::KeyPath;
 
 use super::source::{Fault, FaultKind};
 
-/// One fault a line, and one for a bracket that is never closed and all the text it swallows.
-pub(super) fn faults(text: &str, table: &DeTable<'_>, errors: &[Error]) -> Vec<Fault> {
+/// One fault a line, and one for a bracket that is never closed and all the text it swallows; and
+/// the stretches of text that may have been read wrongly.
+pub(super) fn faults(text: &str, table: &DeTable<'_>, errors: &[Error]) -> (Vec<Fault>, Vec<Range<usize>>) {
     let mut errors: Vec<(Range<usize>, &Error)> =
         errors.iter().map(|error| (error.span().unwrap_or(0..0), error)).collect();
     errors.sort_by_key(|(span, _)| span.start);
     let mut values = Vec::new();
     collect_values(table, &mut values);
-    let mut faults = Vec::new();
+    let (mut faults, mut doubtful) = (Vec::new(), Vec::new());
     let mut quiet_until = 0;
     for (span, error) in &errors {
         if !faults.is_empty() && span.start < quiet_until {
@@ -27,12 +28,14 @@ pub(super) fn faults(text: &str, table: &DeTable<'_>, errors: &[Error]) -> Vec<F
         });
         let line_end = text[span.start.min(text.len())..].find('\n').map_or(text.len(), |end| span.start + end);
         quiet_until = value.map_or(0, |value| value.end + 1).max(line_end + 1);
+        let line_start = text[..span.start.min(text.len())].rfind('\n').map_or(0, |end| end + 1);
+        doubtful.push(value.map_or(line_start, |value| value.start.min(line_start))..quiet_until.saturating_sub(1));
         faults.push(match unclosed {
             Some(value) => never_closed(text, value),
             None => syntax_fault(text, span.clone(), error),
         });
     }
-    faults
+    (faults, doubtful)
 }
 
 fn is_unclosed(error: &Error) -> bool {
@@ -46,17 +49,30 @@ fn never_closed(text: &str, value: &Range<usize>) -> Fault {
         .hint(format!("add the missing `{closing}`"))
 }
 
+/// The parser's message, in plainer words where it is hard to read.
 fn syntax_fault(text: &str, span: Range<usize>, error: &Error) -> Fault {
-    if error.message() == "recursion limit" {
-        return fault(span, "keys or brackets are nested too deeply".to_owned());
-    }
     let (what, expected) = error.message().split_once(", expected ").unwrap_or((error.message(), ""));
-    let made = fault(span.clone(), format!("{what} (TOML syntax)"));
-    if what.starts_with("string values must be quoted") {
-        let word = text.get(span).unwrap_or("").trim();
-        return made.hint(format!("write \"{word}\""));
+    let word = text.get(span.clone()).unwrap_or("").trim();
+    let plain = |message: &str| fault(span.clone(), message.to_owned());
+    match what {
+        "recursion limit" => plain("keys or brackets are nested too deeply"),
+        "cannot recurse further; max recursion depth met" => plain("brackets are nested too deeply"),
+        "string values must be quoted" if word.is_empty() => plain("the value is missing"),
+        "string values must be quoted"
+            if word.starts_with(|letter: char| letter.is_ascii_digit() || "+-.".contains(letter)) =>
+        {
+            plain("this is not a number").hint(format!("write a number alone, or the string \"{word}\""))
+        }
+        "string values must be quoted" => plain("a string must be in quotes").hint(format!("write \"{word}\"")),
+        "invalid basic string" if expected == "`\"`" => plain("the string is never closed").hint("add the missing \""),
+        "missing escaped value" => plain("a backslash in a string begins an escape such as \\n")
+            .hint("write \\\\ for a backslash, or put the string in single quotes"),
+        "duplicate key" => plain("this key or table is already there").hint("keep one of the two"),
+        "unexpected key or value" => plain("unexpected text behind the value")
+            .hint("a number has a decimal point; a further key needs a line of its own"),
+        _ if expected.is_empty() || expected == "nothing" => fault(span, format!("{what} (TOML syntax)")),
+        _ => fault(span, format!("{what} (TOML syntax)")).hint(format!("expected {expected}")),
     }
-    if expected.is_empty() || expected == "nothing" { made } else { made.hint(format!("expected {expected}")) }
 }
 
 fn fault(span: Range<usize>, message: String) -> Fault {

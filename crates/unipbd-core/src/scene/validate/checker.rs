@@ -101,7 +101,8 @@ impl<'a> Checker<'a> {
 
 /// A number as one would write it: no rounding noise, no rows of zeros.
 pub(super) fn number(value: f64) -> String {
-    let size = value.abs();
+    let value = format!("{value:.11e}").parse().unwrap_or(value);
+    let size = f64::abs(value);
     if size != 0.0 && !(1e-4..1e7).contains(&size) { format!("{value:e}") } else { format!("{value}") }
 }
 

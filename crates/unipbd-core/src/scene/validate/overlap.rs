@@ -105,7 +105,12 @@ pub(super) fn check(checker: &mut Checker) {
     }
     for (later, first, distance) in found.iter().enumerate().filter_map(|(i, f)| f.map(|(other, d)| (i, other, d))) {
         let other = &lattices[first].path;
-        let message = format!("overlaps {other}: particles only {} m apart", rounded(distance));
+        let apart = if distance < spacing * 1e-6 {
+            "particles in the same place".to_owned()
+        } else {
+            format!("particles only {} m apart", rounded(distance))
+        };
+        let message = format!("overlaps {other}: {apart}");
         let hint = format!("let them touch edge to edge at most: particles should be one spacing ({spacing} m) apart");
         checker.problem(lattices[later].path.clone(), message, hint);
     }

@@ -104,7 +104,7 @@ fn in_obstacle(checker: &Checker, source: &Source, slack: f64) -> Finding {
         }
         let within = SIDES.iter().all(|&(_, _, outward)| source.shape.reach(outward) <= side_level(outward, min, max));
         let verb = if within { "lies inside" } else { "reaches into" };
-        let hint = "particles must start outside obstacles: move it, or split it around the obstacle";
+        let hint = "particles must start outside obstacles";
         return Some((format!("{} {verb} obstacle[{index}]", subject(source)), hint.to_owned()));
     }
     None

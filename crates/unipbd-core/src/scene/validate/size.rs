@@ -31,15 +31,17 @@ fn check_counts(checker: &mut Checker, spacing: f64) -> bool {
         checker.problem(KeyPath::key("spacing"), too_many("the scene starts with", total), "raise it");
         sane = false;
     }
-    sane && check_peak(checker)
+    let known = counts.iter().all(|(_, count)| count.is_finite());
+    sane && (!known || check_peak(checker))
 }
 
 fn check_peak(checker: &mut Checker) -> bool {
     if checker.scene.duration > LONGEST_DURATION {
         return true;
     }
-    let peak = checker.scene.estimate().particles_at_peak;
-    let sane = (peak as f64) < TOO_MANY_PARTICLES;
+    let estimate = checker.scene.estimate();
+    let peak = estimate.particles_at_peak;
+    let sane = (peak as f64) < TOO_MANY_PARTICLES || !estimate.emitted_per_second.is_finite();
     if !sane {
         let hint = "shorten `duration`, give the materials a `lifetime`, or raise `spacing`";
         checker.problem(KeyPath::key("emitter"), too_many("the emitters bring the scene to", peak as f64), hint);
