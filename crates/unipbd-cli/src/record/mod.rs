@@ -28,8 +28,8 @@ mod shapes;
 mod topic;
 mod writer;
 
-use std::fs::File;
-use std::io::Write;
+use std::fs::{File, OpenOptions, TryLockError};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use unipbd_core::observe::{Diagnostics, Event};
@@ -72,7 +72,7 @@ impl Recorder {
     /// Starts a log at a path; a file that is there is replaced at once (see [`Destination`] for
     /// when that is wanted).
     pub fn create(path: &Path, header: &Header, fields: Fields) -> Result<Recorder, RecordError> {
-        let file = File::create(path).map_err(|cause| RecordError::new(path, cause))?;
+        let file = open_alone(path).map_err(|cause| RecordError::new(path, cause))?;
         Recorder::to_writer(file, path, header, fields)
     }
 
@@ -109,4 +109,18 @@ impl Recorder {
         let totals = self.background.finish().map_err(|cause| RecordError::new(&self.path, cause))?;
         Ok(Summary { frames: totals.frames, bytes: totals.bytes })
     }
+}
+
+/// Opens an empty file that no other recorder writes to.
+fn open_alone(path: &Path) -> io::Result<File> {
+    let file = OpenOptions::new().write(true).create(true).truncate(false).open(path)?;
+    if !file.metadata()?.is_file() {
+        return Ok(file);
+    }
+    // A file system without locks is no reason to refuse.
+    if let Err(TryLockError::WouldBlock) = file.try_lock() {
+        return Err(io::Error::new(io::ErrorKind::ResourceBusy, "another run is writing it"));
+    }
+    file.set_len(0)?;
+    Ok(file)
 }

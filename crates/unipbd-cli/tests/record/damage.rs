@@ -1,8 +1,10 @@
 //! Logs that a crash cut off are read up to the cut; damaged and foreign files are errors, never
 //! panics or wrong frames.
 
-use std::fs;
 use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+use std::time::{Duration, Instant};
+use std::{env, fs, thread};
 
 use crate::support::{diagnostics, events, header, snapshot};
 use tempfile::TempDir;
@@ -146,4 +148,42 @@ fn a_log_whose_recorder_was_never_finished_is_whole_nevertheless() {
     drop(recorder);
     let (frames, truncated, failure) = read_all(&path).unwrap();
     assert_eq!((frames.len(), truncated, failure.is_none()), (1, false, true));
+}
+
+const ENDLESS_LOG: &str = "UNIPBD_TEST_ENDLESS_LOG";
+
+/// Not a test of its own: the process that the next test kills.
+#[test]
+#[ignore = "runs until it is killed"]
+fn endless_run() {
+    let Some(path) = env::var_os(ENDLESS_LOG) else { return };
+    let mut recorder = Recorder::create(path.as_ref(), &header(), Fields::default()).unwrap();
+    for frame in 0.. {
+        recorder.record(&snapshot(400, frame), None, None, &events(frame)).unwrap();
+    }
+}
+
+#[test]
+fn a_killed_run_leaves_a_log_that_is_readable_to_the_last_frames() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("killed.mcap");
+    let mut run = Command::new(env::current_exe().unwrap())
+        .args(["--ignored", "--exact", "damage::endless_run"])
+        .env(ENDLESS_LOG, &path)
+        .stdout(Stdio::null())
+        .spawn()
+        .unwrap();
+    let deadline = Instant::now() + Duration::from_secs(60);
+    while fs::metadata(&path).map_or(0, |file| file.len()) < 200_000 {
+        assert!(Instant::now() < deadline, "the run writes nothing");
+        thread::sleep(Duration::from_millis(2));
+    }
+    run.kill().unwrap(); // SIGKILL on Unix
+    run.wait().unwrap();
+    let (frames, truncated, failure) = read_all(&path).unwrap();
+    assert!(truncated && failure.is_none(), "{failure:?}");
+    assert!(frames.len() > 10, "{} frames", frames.len());
+    for (frame, number) in frames.iter().zip(0..) {
+        assert_eq!(frame.snapshot.ids.len(), snapshot(400, number).ids.len());
+    }
 }

@@ -264,3 +264,22 @@ fn a_missing_folder_is_an_error_that_names_the_file() {
     let error = Recorder::create("no/such/folder/run.mcap".as_ref(), &header(), Fields::ALL).err().unwrap();
     assert!(error.to_string().contains("no/such/folder/run.mcap: No such file"), "{error}");
 }
+
+#[test]
+fn two_runs_do_not_write_the_same_file() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("run.mcap");
+    let first = Recorder::create(&path, &header(), Fields::default()).unwrap();
+    let refused = Recorder::create(&path, &header(), Fields::default()).err().unwrap();
+    assert!(refused.to_string().ends_with("run.mcap: another run is writing it"), "{refused}");
+    first.finish().unwrap();
+    record(&path, Fields::default());
+    assert!(Log::open(&path).is_ok());
+}
+
+#[cfg(target_os = "linux")]
+#[test]
+fn a_full_device_is_an_error_that_names_it() {
+    let error = Recorder::create("/dev/full".as_ref(), &header(), Fields::default()).err().unwrap();
+    assert!(error.to_string().starts_with("cannot write the log /dev/full: No space left on device"), "{error}");
+}
