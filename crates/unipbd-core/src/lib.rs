@@ -21,6 +21,7 @@ pub mod parallel;
 pub mod particles;
 pub mod phase;
 pub mod scene;
+pub mod simd;
 pub mod step;
 
 pub use math::{Real, Vector, Vector64};
