@@ -29,6 +29,7 @@ pub mod rows;
 pub mod scene;
 mod sources;
 mod state;
+pub mod simd;
 pub mod step;
 pub mod walls;
 

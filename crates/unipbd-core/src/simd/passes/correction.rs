@@ -1,0 +1,96 @@
+//! The displacements of the density constraint.
+
+use super::{Pairs, Pass, in_space};
+use crate::math::{Real, Vector};
+use crate::neighbors::NeighborList;
+use crate::simd::shapes::{Number, Shape};
+use crate::simd::space::Space;
+
+/// out_i = sum_j (l_i + l_j) grad W_ij, for multipliers l (Macklin & Müller 2013, equation 12).
+pub fn correction<K: Shape>(
+    pairs: Pairs<'_>,
+    kernel: K,
+    positions: &[Vector],
+    multipliers: &[Real],
+    out: &mut [Vector],
+) {
+    in_space!(pairs, space => pairs.fill_vectors(&Correction { kernel, space, positions, multipliers }, out));
+}
+
+#[derive(Clone, Copy)]
+struct Correction<'a, K, S> {
+    kernel: K,
+    space: S,
+    positions: &'a [Vector],
+    multipliers: &'a [Real],
+}
+
+impl<K: Shape, S: Space> Pass<2> for Correction<'_, K, S> {
+    fn row(&self, list: &NeighborList, row: usize) -> [Real; 2] {
+        let [mut sum_x, mut sum_y] = [0.0; 2];
+        list.for_each(row, |j| {
+            let apart = self.positions[row] - self.positions[j];
+            let (x, y) = self.space.shortest(apart.x, apart.y);
+            let factor = self.kernel.at(x * x + y * y).1 * (self.multipliers[row] + self.multipliers[j]);
+            sum_x += factor * x;
+            sum_y += factor * y;
+        });
+        self.finish([sum_x, sum_y])
+    }
+
+    #[inline(always)]
+    fn finish<M: Number>(&self, [x, y]: [M; 2]) -> [M; 2] {
+        let slope = x.like(self.kernel.slope_scale());
+        [x * slope, y * slope]
+    }
+
+    fn shortest_column(&self) -> usize {
+        self.positions.len().min(self.multipliers.len())
+    }
+}
+
+#[cfg(not(feature = "f64"))]
+mod lanes {
+    use super::*;
+    use crate::neighbors::LANES;
+    use crate::simd::lanes::{Entry, Lanes};
+    use crate::simd::run::LanePass;
+
+    #[allow(unsafe_code)]
+    impl<K: Shape, S: Space> LanePass<2> for Correction<'_, K, S> {
+        /// Position and multiplier.
+        type Own<F: Lanes> = (F, F, F);
+
+        #[inline(always)]
+        unsafe fn own<F: Lanes>(&self, base: usize, column: &[i16; LANES]) -> Self::Own<F> {
+            // SAFETY: the caller vouches that all rows are within the columns.
+            unsafe {
+                let (x, y) = F::gather_vectors(self.positions.as_ptr().add(base), column);
+                (x, y, F::gather(self.multipliers.as_ptr().add(base), column))
+            }
+        }
+
+        #[inline(always)]
+        unsafe fn add<F: Lanes, E: Entry>(
+            &self,
+            own: &Self::Own<F>,
+            sums: &mut [F; 2],
+            base: usize,
+            column: &[E; LANES],
+            _counted: impl Fn(F) -> F,
+        ) {
+            // SAFETY: the caller vouches that all rows are within the columns.
+            let ((other_x, other_y), multiplier) = unsafe {
+                (
+                    F::gather_vectors(self.positions.as_ptr().add(base), column),
+                    F::gather(self.multipliers.as_ptr().add(base), column),
+                )
+            };
+            let (x, y) = self.space.shortest(own.0 - other_x, own.1 - other_y);
+            let factor = self.kernel.at(x * x + y * y).1 * (own.2 + multiplier);
+            // Padding lies at distance zero and adds nothing.
+            sums[0] = sums[0] + factor * x;
+            sums[1] = sums[1] + factor * y;
+        }
+    }
+}

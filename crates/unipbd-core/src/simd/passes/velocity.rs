@@ -1,0 +1,187 @@
+//! Passes over velocities: XSPH and vorticity.
+
+use super::{Pairs, Pass, Weights, in_space, rows_if};
+use crate::math::{Real, Vector};
+use crate::neighbors::NeighborList;
+use crate::simd::shapes::{Number, Shape};
+use crate::simd::space::Space;
+
+/// out_i = sum_j w_j (v_j - v_i) W_ij (Schechter & Bridson 2012).
+pub fn xsph<K: Shape>(
+    pairs: Pairs<'_>,
+    kernel: K,
+    positions: &[Vector],
+    velocities: &[Vector],
+    weights: Weights<'_>,
+    out: &mut [Vector],
+) {
+    let (column, factor) = weights.parts();
+    in_space!(pairs, space => if weights.is_column() {
+        pairs.fill_vectors(&Xsph::<_, _, true> { kernel, space, positions, velocities, weights: column, factor }, out)
+    } else {
+        pairs.fill_vectors(&Xsph::<_, _, false> { kernel, space, positions, velocities, weights: column, factor }, out)
+    });
+}
+
+/// out_i = sum_j x_ij x (v_j - v_i) g_ij: the vorticity, once multiplied by the volume of a particle.
+pub fn vorticity<K: Shape>(pairs: Pairs<'_>, kernel: K, positions: &[Vector], velocities: &[Vector], out: &mut [Real]) {
+    in_space!(pairs, space => pairs.fill(&Vorticity { kernel, space, positions, velocities }, out));
+}
+
+#[derive(Clone, Copy)]
+struct Xsph<'a, K, S, const WEIGHTED: bool> {
+    kernel: K,
+    space: S,
+    positions: &'a [Vector],
+    velocities: &'a [Vector],
+    weights: &'a [Real],
+    factor: Real,
+}
+
+impl<K: Shape, S: Space, const WEIGHTED: bool> Pass<2> for Xsph<'_, K, S, WEIGHTED> {
+    fn row(&self, list: &NeighborList, row: usize) -> [Real; 2] {
+        let [mut sum_x, mut sum_y] = [0.0; 2];
+        list.for_each(row, |j| {
+            let apart = self.positions[row] - self.positions[j];
+            let (x, y) = self.space.shortest(apart.x, apart.y);
+            let mut w = self.kernel.at(x * x + y * y).0;
+            if WEIGHTED {
+                w *= self.weights[j];
+            }
+            sum_x += w * (self.velocities[j].x - self.velocities[row].x);
+            sum_y += w * (self.velocities[j].y - self.velocities[row].y);
+        });
+        self.finish([sum_x, sum_y])
+    }
+
+    #[inline(always)]
+    fn finish<M: Number>(&self, [x, y]: [M; 2]) -> [M; 2] {
+        let factor = x.like(self.kernel.value_scale() * self.factor);
+        [x * factor, y * factor]
+    }
+
+    fn shortest_column(&self) -> usize {
+        self.positions.len().min(self.velocities.len()).min(rows_if(WEIGHTED, self.weights))
+    }
+}
+
+#[derive(Clone, Copy)]
+struct Vorticity<'a, K, S> {
+    kernel: K,
+    space: S,
+    positions: &'a [Vector],
+    velocities: &'a [Vector],
+}
+
+impl<K: Shape, S: Space> Pass<1> for Vorticity<'_, K, S> {
+    fn row(&self, list: &NeighborList, row: usize) -> [Real; 1] {
+        let mut sum = 0.0;
+        list.for_each(row, |j| {
+            let apart = self.positions[row] - self.positions[j];
+            let (x, y) = self.space.shortest(apart.x, apart.y);
+            let g = self.kernel.at(x * x + y * y).1;
+            let u = self.velocities[j].x - self.velocities[row].x;
+            let v = self.velocities[j].y - self.velocities[row].y;
+            sum += g * (x * v - y * u);
+        });
+        self.finish([sum])
+    }
+
+    #[inline(always)]
+    fn finish<M: Number>(&self, [sum]: [M; 1]) -> [M; 1] {
+        [sum * sum.like(self.kernel.slope_scale())]
+    }
+
+    fn shortest_column(&self) -> usize {
+        self.positions.len().min(self.velocities.len())
+    }
+}
+
+#[cfg(not(feature = "f64"))]
+mod lanes {
+    use super::*;
+    use crate::neighbors::LANES;
+    use crate::simd::lanes::{Entry, Lanes};
+    use crate::simd::run::LanePass;
+
+    /// Vectors of two columns.
+    ///
+    /// # Safety
+    /// As for [`Lanes::gather_vectors`], in both columns.
+    #[allow(unsafe_code)]
+    #[inline(always)]
+    unsafe fn gather_both<F: Lanes, E: Entry>(
+        a: &[Vector],
+        b: &[Vector],
+        base: usize,
+        column: &[E; LANES],
+    ) -> ((F, F), (F, F)) {
+        // SAFETY: passed on to the caller.
+        unsafe { (F::gather_vectors(a.as_ptr().add(base), column), F::gather_vectors(b.as_ptr().add(base), column)) }
+    }
+
+    #[allow(unsafe_code)]
+    impl<K: Shape, S: Space, const WEIGHTED: bool> LanePass<2> for Xsph<'_, K, S, WEIGHTED> {
+        /// Position and velocity.
+        type Own<F: Lanes> = ((F, F), (F, F));
+
+        #[inline(always)]
+        unsafe fn own<F: Lanes>(&self, base: usize, column: &[i16; LANES]) -> Self::Own<F> {
+            // SAFETY: the caller vouches that all rows are within the columns.
+            unsafe { gather_both(self.positions, self.velocities, base, column) }
+        }
+
+        #[inline(always)]
+        unsafe fn add<F: Lanes, E: Entry>(
+            &self,
+            own: &Self::Own<F>,
+            sums: &mut [F; 2],
+            base: usize,
+            column: &[E; LANES],
+            _counted: impl Fn(F) -> F,
+        ) {
+            // SAFETY: the caller vouches that all rows are within the columns.
+            let ((other_x, other_y), (u, v)): Self::Own<F> =
+                unsafe { gather_both(self.positions, self.velocities, base, column) };
+            let (x, y) = self.space.shortest(own.0.0 - other_x, own.0.1 - other_y);
+            let mut w = self.kernel.at(x * x + y * y).0;
+            if WEIGHTED {
+                // SAFETY: as above.
+                w = w * unsafe { F::gather(self.weights.as_ptr().add(base), column) };
+            }
+            // Padding has no velocity of its own and adds nothing.
+            sums[0] = sums[0] + w * (u - own.1.0);
+            sums[1] = sums[1] + w * (v - own.1.1);
+        }
+    }
+
+    #[allow(unsafe_code)]
+    impl<K: Shape, S: Space> LanePass<1> for Vorticity<'_, K, S> {
+        /// Position and velocity.
+        type Own<F: Lanes> = ((F, F), (F, F));
+
+        #[inline(always)]
+        unsafe fn own<F: Lanes>(&self, base: usize, column: &[i16; LANES]) -> Self::Own<F> {
+            // SAFETY: the caller vouches that all rows are within the columns.
+            unsafe { gather_both(self.positions, self.velocities, base, column) }
+        }
+
+        #[inline(always)]
+        unsafe fn add<F: Lanes, E: Entry>(
+            &self,
+            own: &Self::Own<F>,
+            sums: &mut [F; 1],
+            base: usize,
+            column: &[E; LANES],
+            _counted: impl Fn(F) -> F,
+        ) {
+            // SAFETY: the caller vouches that all rows are within the columns.
+            let ((other_x, other_y), (u, v)): Self::Own<F> =
+                unsafe { gather_both(self.positions, self.velocities, base, column) };
+            let (x, y) = self.space.shortest(own.0.0 - other_x, own.0.1 - other_y);
+            let g = self.kernel.at(x * x + y * y).1;
+            // Padding lies at distance zero and adds nothing.
+            sums[0] = sums[0] + g * (x * (v - own.1.1) - y * (u - own.1.0));
+        }
+    }
+}

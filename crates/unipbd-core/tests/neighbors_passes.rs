@@ -1,0 +1,268 @@
+//! The passes over pairs: every instruction set gives the bits of the scalar form, and the scalar
+//! form is the formula.
+
+use unipbd_core::neighbors::{Grid, NeighborList, Periodic, PeriodicAxis};
+use unipbd_core::parallel::Parallelism;
+use unipbd_core::simd::{
+    CubicSpline, DensityInput, DensityOutput, Level, Mixed, Pairs, Poly6, Shape, Spiky, Weights, WendlandC2,
+    correction, density, difference_gradient, laplacian, repulsion, vorticity, xsph,
+};
+use unipbd_core::{Real, Vector};
+
+const RADIUS: Real = 2.5;
+const SIDE: Real = 24.0;
+
+/// A small generator, so that data differ from row to row in all their bits.
+struct Random(u64);
+
+impl Random {
+    fn next(&mut self) -> Real {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        ((self.0 >> 40) as f64 / (1u64 << 24) as f64) as Real
+    }
+    fn column(&mut self, rows: usize) -> Vec<Real> {
+        (0..rows).map(|_| self.next() * 2.0 - 1.0).collect()
+    }
+    fn vectors(&mut self, rows: usize, scale: Real) -> Vec<Vector> {
+        (0..rows).map(|_| Vector::new(self.next(), self.next()) * scale).collect()
+    }
+}
+
+/// Columns of one particle set, sorted, and its list.
+struct Set {
+    periodic: Periodic,
+    list: NeighborList,
+    x: Vec<Vector>,
+    start: Vec<Vector>,
+    v: Vec<Vector>,
+    weights: Vec<Real>,
+    field: Vec<Real>,
+}
+
+impl Set {
+    fn new(x: Vec<Vector>, periodic: Periodic) -> Set {
+        let mut random = Random(7);
+        let rows = x.len();
+        let mut grid = Grid::new(periodic);
+        // A list wider than the kernel, as one with a skin is.
+        let radius = RADIUS * 1.15;
+        let order = grid.order(&x, rows, radius, Parallelism::Serial);
+        let x: Vec<_> = order.iter().map(|&row| x[row as usize]).collect();
+        let mut list = NeighborList::default();
+        list.build(&grid, &x, radius, Parallelism::Serial);
+        let start = x.iter().map(|&x| x + Vector::new(random.next(), random.next()) * 0.1).collect();
+        let (v, weights, field) = (random.vectors(rows, 3.0), random.column(rows), random.column(rows));
+        Set { periodic, list, x, start, v, weights, field }
+    }
+
+    fn random(rows: usize, periodic: Periodic) -> Set {
+        let mut x = Random(rows as u64).vectors(rows, SIDE);
+        for row in (3..rows).step_by(11) {
+            x[row] = x[row - 1];
+        }
+        Set::new(x, periodic)
+    }
+
+    fn pairs(&self, level: Level, parallelism: Parallelism) -> Pairs<'_> {
+        Pairs::new(&self.list, self.periodic, parallelism).at_level(level)
+    }
+}
+
+/// The results of every pass, one row of numbers each.
+fn all_passes(set: &Set, kernel: impl Shape, level: Level, parallelism: Parallelism) -> Vec<(&'static str, Vec<Real>)> {
+    let rows = set.x.len();
+    let pairs = set.pairs(level, parallelism);
+    let (mut a, mut b, mut g) = (vec![0.0; rows], vec![0.0; rows], vec![Vector::ZERO; rows]);
+    let flat = |vectors: &[Vector]| vectors.iter().flat_map(|v| [v.x, v.y]).collect::<Vec<_>>();
+    let mut results = Vec::new();
+    for weights in [Weights::Uniform(0.7), Weights::Column(&set.weights)] {
+        for gradient_positions in [None, Some(&set.start[..])] {
+            let input = DensityInput { positions: &set.x, gradient_positions, weights };
+            density(pairs, kernel, input, DensityOutput { value: &mut a, gradient: &mut g, response: &mut b });
+            results.push(("density", [a.clone(), flat(&g), b.clone()].concat()));
+        }
+        repulsion(pairs, 0.8, &set.x, weights, &mut g);
+        results.push(("repulsion", flat(&g)));
+        xsph(pairs, kernel, &set.x, &set.v, weights, &mut g);
+        results.push(("xsph", flat(&g)));
+        laplacian(pairs, kernel, &set.x, &set.field, weights, &mut a);
+        results.push(("laplacian", a.clone()));
+    }
+    correction(pairs, kernel, &set.x, &set.field, &mut g);
+    results.push(("correction", flat(&g)));
+    vorticity(pairs, kernel, &set.x, &set.v, &mut a);
+    results.push(("vorticity", a.clone()));
+    difference_gradient(pairs, kernel, &set.x, &set.field, &mut g);
+    results.push(("difference gradient", flat(&g)));
+    results
+}
+
+fn assert_levels_agree(set: &Set, kernel: impl Shape) {
+    let oracle = all_passes(set, kernel, Level::Scalar, Parallelism::Serial);
+    for level in Level::available() {
+        for ((name, wanted), (_, found)) in oracle.iter().zip(all_passes(set, kernel, level, Parallelism::Serial)) {
+            for (k, (wanted, found)) in wanted.iter().zip(&found).enumerate() {
+                assert!(wanted.is_finite(), "{name}: {wanted}");
+                assert_eq!(wanted.to_bits(), found.to_bits(), "{name}, {level:?}, number {k}: {wanted} {found}");
+            }
+        }
+    }
+}
+
+fn periods() -> [Periodic; 3] {
+    let axis = Some(PeriodicAxis { from: 0.0, length: SIDE });
+    [Periodic::NONE, Periodic { x: axis, y: None }, Periodic { x: axis, y: axis }]
+}
+
+#[test]
+fn every_level_gives_the_bits_of_the_scalar_form() {
+    assert!(Level::available().contains(&Level::best()));
+    for periodic in periods() {
+        for rows in [0, 1, 2, 7, 8, 9, 40, 511, 512, 513, 700] {
+            assert_levels_agree(&Set::random(rows, periodic), WendlandC2::new(f64::from(RADIUS)));
+        }
+    }
+}
+
+#[test]
+fn every_kernel_gives_the_bits_of_the_scalar_form() {
+    let radius = f64::from(RADIUS);
+    let set = Set::random(300, periods()[1]);
+    assert_levels_agree(&set, Poly6::new(radius));
+    assert_levels_agree(&set, Spiky::new(radius));
+    assert_levels_agree(&set, CubicSpline::new(radius));
+    assert_levels_agree(&set, Mixed { value: Poly6::new(radius), slope: Spiky::new(radius) });
+}
+
+#[test]
+fn wide_entries_give_the_bits_of_the_scalar_form() {
+    // Two rows of cells with 34,000 particles each: offsets between them exceed 16 bits.
+    let mut random = Random(3);
+    let x = (0..68_000).map(|k| Vector::new((k / 2) as Real + random.next() * 0.5, (k % 2) as Real * 2.0 + 2.0));
+    assert_levels_agree(&Set::new(x.collect(), Periodic::NONE), WendlandC2::new(f64::from(RADIUS)));
+}
+
+#[test]
+fn thread_counts_do_not_change_bits() {
+    let mut x = Random(5).vectors(6000, SIDE);
+    x.iter_mut().for_each(|x| *x *= 3.0);
+    let set = Set::new(x, Periodic::NONE);
+    let kernel = WendlandC2::new(f64::from(RADIUS));
+    let serial = all_passes(&set, kernel, Level::best(), Parallelism::Serial);
+    for threads in [1, 2, 3, 8] {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let parallel = pool.install(|| all_passes(&set, kernel, Level::best(), Parallelism::Pool));
+        assert!(parallel == serial, "{threads} threads");
+    }
+}
+
+fn relative(found: f64, wanted: f64, scale: f64) -> f64 {
+    (found - wanted).abs() / scale
+}
+
+/// The formulas of the passes in double precision over all pairs, without any list.
+#[test]
+fn passes_compute_their_formulas() {
+    for periodic in periods() {
+        let set = Set::random(400, periodic);
+        let kernel = WendlandC2::new(f64::from(RADIUS));
+        let results = all_passes(&set, kernel, Level::best(), Parallelism::Serial);
+        let h = f64::from(RADIUS);
+        let pi = std::f64::consts::PI;
+        for i in 0..400 {
+            let mut wanted = [0.0; 14];
+            let mut scale = [1e-3; 14];
+            for j in (0..400).filter(|&j| j != i) {
+                let apart = |p: &[Vector]| {
+                    let d = periodic.min_image(p[i] - p[j]);
+                    (f64::from(d.x), f64::from(d.y))
+                };
+                let slope = |(x, y): (f64, f64)| -140.0 / (pi * h.powi(4)) * (1.0 - x.hypot(y) / h).max(0.0).powi(3);
+                let ((x, y), start) = (apart(&set.x), apart(&set.start));
+                let (r, t) = (x.hypot(y), (1.0 - x.hypot(y) / h).max(0.0));
+                let w = 7.0 / (pi * h * h) * t.powi(4) * (1.0 + 4.0 * r / h);
+                let (g, g0) = (slope((x, y)), slope(start));
+                let of = |column: &[Real], k: usize| f64::from(column[k]);
+                let (u, v) = (f64::from(set.v[j].x - set.v[i].x), f64::from(set.v[j].y - set.v[i].y));
+                let (weight, sum) = (of(&set.weights, j), of(&set.field, i) + of(&set.field, j));
+                let difference = of(&set.field, j) - of(&set.field, i);
+                let push = if r == 0.0 { 0.0 } else { (f64::from(0.8 as Real) - r).max(0.0) / r };
+                let flip = if r > 0.0 {
+                    0.0
+                } else if i < j {
+                    -0.8
+                } else {
+                    0.8
+                };
+                let terms = [
+                    w,
+                    g * x,
+                    g * y,
+                    0.7 * g * g * r * r,
+                    g0 * start.0,
+                    weight * g0 * g0 * (start.0 * start.0 + start.1 * start.1),
+                    weight * (push * x + flip),
+                    weight * push * y,
+                    weight * w * u,
+                    weight * w * v,
+                    -weight * g * difference,
+                    sum * g * x,
+                    g * (x * v - y * u),
+                    difference * g * y,
+                ];
+                for k in 0..14 {
+                    wanted[k] += terms[k];
+                    scale[k] += terms[k].abs();
+                }
+            }
+            let at = |pass: usize, number: usize| f64::from(results[pass].1[number]);
+            let rows = 400;
+            let found = [
+                at(0, i),
+                at(0, rows + 2 * i),
+                at(0, rows + 2 * i + 1),
+                at(0, 3 * rows + i),
+                at(1, rows + 2 * i),
+                at(6, 3 * rows + i),
+                at(7, 2 * i),
+                at(7, 2 * i + 1),
+                at(8, 2 * i),
+                at(8, 2 * i + 1),
+                at(9, i),
+                at(10, 2 * i),
+                at(11, i),
+                at(12, 2 * i + 1),
+            ];
+            for k in 0..14 {
+                let error = relative(found[k], wanted[k], scale[k]);
+                assert!(error < 2e-5, "row {i}, quantity {k}: {} instead of {}", found[k], wanted[k]);
+            }
+        }
+    }
+}
+
+#[test]
+fn corrections_and_repulsion_push_both_of_a_pair_alike() {
+    let set = Set::random(600, periods()[2]);
+    let kernel = WendlandC2::new(f64::from(RADIUS));
+    let pairs = set.pairs(Level::best(), Parallelism::Serial);
+    let mut out = vec![Vector::ZERO; 600];
+    let total = |out: &[Vector]| out.iter().fold(Vector::ZERO, |sum, &v| sum + v).length();
+    let size = |out: &[Vector]| out.iter().map(|v| v.length()).sum::<Real>();
+    correction(pairs, kernel, &set.x, &set.field, &mut out);
+    assert!(total(&out) < 1e-5 * size(&out));
+    repulsion(pairs, 0.8, &set.x, Weights::Column(&set.weights), &mut out);
+    out.iter_mut().zip(&set.weights).for_each(|(v, &s)| *v *= s);
+    assert!(size(&out) > 1.0 && total(&out) < 1e-5 * size(&out));
+}
+
+#[test]
+#[should_panic(expected = "shortest_column")]
+fn short_columns_are_refused() {
+    let set = Set::random(100, Periodic::NONE);
+    let mut out = vec![Vector::ZERO; 100];
+    if cfg!(feature = "f64") {
+        panic!("shortest_column: slices check themselves in the scalar form");
+    }
+    correction(set.pairs(Level::best(), Parallelism::Serial), WendlandC2::new(2.5), &set.x[..99], &set.field, &mut out);
+}
