@@ -14,11 +14,13 @@
 //! ```
 
 pub mod bodies;
+pub mod constraints;
 pub mod math;
 pub mod observe;
 pub mod particles;
 pub mod phase;
 pub mod scene;
+pub mod shapes;
 pub mod step;
 
 pub use math::{Real, Vector, Vector64};

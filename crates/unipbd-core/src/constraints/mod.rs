@@ -1,0 +1,3 @@
+//! Constraints between particles and bodies.
+
+pub mod contact;
