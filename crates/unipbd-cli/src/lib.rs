@@ -1,7 +1,7 @@
 //! The `unipbd` command line as a library: scene files, runs, logs, pictures.
 
-pub mod render;
-pub mod scene_file;
 pub mod read;
 pub mod record;
+pub mod render;
+pub mod scene_file;
 pub mod snapshot;

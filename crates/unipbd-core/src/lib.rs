@@ -27,9 +27,10 @@ pub mod phase;
 mod rng;
 pub mod rows;
 pub mod scene;
+pub mod shapes;
+pub mod simd;
 mod sources;
 mod state;
-pub mod simd;
 pub mod step;
 pub mod walls;
 

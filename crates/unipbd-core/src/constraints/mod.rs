@@ -6,6 +6,7 @@
 //! implement [`Constraint`] and let [`Batch`] do the rest.
 
 mod batch;
+pub mod contact;
 mod corrections;
 mod density;
 mod projection;

@@ -1,0 +1,120 @@
+//! Scripted motion of kinematic bodies.
+
+use super::{Pose, Twist};
+use crate::math::Vector64;
+use std::f64::consts::TAU;
+
+/// A script: where the origin of a kinematic body is at each time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub enum Motion {
+    /// It stays where it started.
+    #[default]
+    Still,
+    /// It moves and turns at constant rates.
+    Steady {
+        /// Velocity [m/s].
+        velocity: Vector64,
+        /// Angular velocity, counter-clockwise [rad/s].
+        spin: f64,
+    },
+    /// It swings about its start as a sine.
+    Oscillate {
+        /// Largest displacement [m].
+        amplitude: Vector64,
+        /// Largest rotation [rad].
+        swing: f64,
+        /// Frequency [1/s].
+        frequency: f64,
+        /// Phase at time zero [rad].
+        phase: f64,
+    },
+    /// It follows waypoints in straight lines; before the first and after the last it rests.
+    Path {
+        /// Waypoints by increasing time.
+        waypoints: Vec<Waypoint>,
+        /// What happens after the last.
+        repeat: Repeat,
+    },
+}
+
+/// A station of a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Waypoint {
+    /// When [s].
+    pub time: f64,
+    /// Displacement from the start [m].
+    pub offset: Vector64,
+    /// Rotation from the start [rad].
+    pub turn: f64,
+}
+
+/// What a path does after its last waypoint.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Repeat {
+    /// Rest there.
+    #[default]
+    Once,
+    /// Begin anew at the first waypoint.
+    Loop,
+}
+
+impl Motion {
+    /// Whether the script never moves anything.
+    pub fn is_still(&self) -> bool {
+        *self == Motion::Still
+    }
+
+    /// Displacement and rotation from the start at a time [s].
+    pub fn displacement(&self, time: f64) -> Twist {
+        match self {
+            Motion::Still => Twist::ZERO,
+            Motion::Steady { velocity, spin } => Twist { linear: *velocity * time, angular: spin * time },
+            Motion::Oscillate { amplitude, swing, frequency, phase } => {
+                let wave = (TAU * frequency * time + phase).sin();
+                Twist { linear: *amplitude * wave, angular: swing * wave }
+            }
+            Motion::Path { waypoints, repeat } => along_path(waypoints, *repeat, time).0,
+        }
+    }
+
+    /// Velocity at a time [s].
+    pub fn velocity(&self, time: f64) -> Twist {
+        match self {
+            Motion::Still => Twist::ZERO,
+            Motion::Steady { velocity, spin } => Twist { linear: *velocity, angular: *spin },
+            Motion::Oscillate { amplitude, swing, frequency, phase } => {
+                let rate = TAU * frequency * (TAU * frequency * time + phase).cos();
+                Twist { linear: *amplitude * rate, angular: swing * rate }
+            }
+            Motion::Path { waypoints, repeat } => along_path(waypoints, *repeat, time).1,
+        }
+    }
+
+    /// The pose at a time [s] of a body that starts at `start`.
+    pub fn pose(&self, start: Pose, time: f64) -> Pose {
+        let moved = self.displacement(time);
+        Pose { position: start.position + moved.linear, angle: start.angle + moved.angular }
+    }
+}
+
+/// Displacement and velocity on a path of straight lines.
+fn along_path(waypoints: &[Waypoint], repeat: Repeat, time: f64) -> (Twist, Twist) {
+    let (Some(first), Some(last)) = (waypoints.first(), waypoints.last()) else { return Default::default() };
+    let duration = last.time - first.time;
+    let time = match repeat {
+        Repeat::Loop if duration > 0.0 && time > first.time => first.time + (time - first.time) % duration,
+        _ => time,
+    };
+    let at = |w: &Waypoint| Twist { linear: w.offset, angular: w.turn };
+    if time < first.time {
+        return (at(first), Twist::ZERO);
+    }
+    let next = waypoints.partition_point(|w| w.time <= time);
+    let Some(to) = waypoints.get(next) else { return (at(last), Twist::ZERO) };
+    let from = &waypoints[next - 1];
+    let rate = 1.0 / (to.time - from.time);
+    let velocity = Twist { linear: (to.offset - from.offset) * rate, angular: (to.turn - from.turn) * rate };
+    let mut place = at(from);
+    place += velocity.scaled(time - from.time);
+    (place, velocity)
+}

@@ -1,0 +1,322 @@
+//! Contacts and joints of rigid bodies: split Jacobi on the displacements of a substep.
+//!
+//! Contacts are constraints on the displacement u of a substep, warm started with the impulses of the
+//! last one and solved by Jacobi sweeps in which a body's mass is split among its contacts (Tonge et al.
+//! 2012, "Mass splitting for jitter-free parallel rigid body simulation"). Overlap never becomes
+//! velocity: a separate pass takes it out of the positions. A substep calls, in this order:
+//!
+//! 1. [`Contacts::begin_substep`] finds the contacts,
+//! 2. [`Bodies::predict`] and [`Contacts::warm_start`],
+//! 3. [`Contacts::iterate`], before and again after the fluid has pushed the bodies,
+//! 4. [`Bodies::integrate`],
+//! 5. [`Contacts::restitute`] and [`Contacts::depenetrate`];
+//!
+//! a frame ends with [`Contacts::finish_frame`] and [`Bodies::finish_frame`].
+
+mod broad;
+mod find;
+mod jacobi;
+mod joint;
+mod narrow;
+mod pieces;
+mod point;
+mod sleep;
+
+pub use joint::{DistanceRule, Joint, JointKind, Motor};
+pub use sleep::SleepSettings;
+
+use crate::bodies::{Bodies, Response, Twist};
+use crate::math::Vector64;
+use crate::shapes::Wall;
+use find::Finder;
+use jacobi::Jacobi;
+use joint::Linked;
+use pieces::NONE;
+use point::{Impulse, entry};
+use sleep::Islands;
+
+/// How contacts are solved.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactSettings {
+    /// Contacts that share a body count this much less: over-relaxation of the split Jacobi sweep.
+    pub relaxation: f64,
+    /// Overlap that is left alone, over the size of the smaller body.
+    pub slop: f64,
+    /// Fastest that overlap is taken out [m/s].
+    pub depenetration_speed: f64,
+    /// Velocity iterations of the restitution pass.
+    pub restitution_iterations: u32,
+    /// When bodies fall asleep; none, never.
+    pub sleep: Option<SleepSettings>,
+}
+
+impl Default for ContactSettings {
+    fn default() -> Self {
+        ContactSettings {
+            relaxation: 1.9,
+            slop: 1e-4,
+            depenetration_speed: 3.0,
+            restitution_iterations: 6,
+            sleep: Some(SleepSettings::default()),
+        }
+    }
+}
+
+/// The contacts and joints of all bodies: solver state that lasts from substep to substep.
+#[derive(Clone)]
+pub struct Contacts {
+    settings: ContactSettings,
+    finder: Finder,
+    joints: Vec<Linked>,
+    islands: Islands,
+    jacobi: Jacobi,
+    split: Vec<Response>,
+    counts: Vec<u32>,
+    corrections: Vec<Twist>,
+    wall_impulses: Vec<Vector64>,
+    wall_forces: Vec<Vector64>,
+    dt: f64,
+    warm_factor: f64,
+    gravity: f64,
+}
+
+/// What can be read about a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactPoint {
+    /// First body.
+    pub body: u32,
+    /// Second body, unless a wall is touched.
+    pub other: Option<u32>,
+    /// The wall touched, if one is.
+    pub wall: Option<u32>,
+    /// Unit normal, towards the first body.
+    pub normal: Vector64,
+    /// Distance of the surfaces at the start of the last substep, negative when they overlap [m].
+    pub gap: f64,
+    /// Normal force on the first body over the last substep [N].
+    pub normal_force: f64,
+    /// Friction force on the first body, along the normal turned left [N].
+    pub friction_force: f64,
+}
+
+impl Contacts {
+    /// No contacts yet, between bodies and these walls.
+    pub fn new(walls: &[Wall], settings: ContactSettings) -> Contacts {
+        Contacts {
+            settings,
+            finder: Finder::new(walls),
+            joints: Vec::new(),
+            islands: Islands::default(),
+            jacobi: Jacobi::default(),
+            split: Vec::new(),
+            counts: Vec::new(),
+            corrections: Vec::new(),
+            wall_impulses: vec![Vector64::ZERO; walls.len()],
+            wall_forces: vec![Vector64::ZERO; walls.len()],
+            dt: 0.0,
+            warm_factor: 1.0,
+            gravity: 0.0,
+        }
+    }
+
+    /// Adds a joint; the bodies it links no longer collide with each other. Returns its index.
+    pub fn add_joint(&mut self, joint: Joint) -> usize {
+        self.joints.push(Linked::new(joint));
+        if let Some(other) = joint.other {
+            self.finder.exclude(joint.body, other);
+        }
+        self.joints.len() - 1
+    }
+
+    /// Changes what a joint keeps, such as the speed of its motor.
+    pub fn set_joint(&mut self, index: usize, kind: JointKind, bodies: &mut Bodies) {
+        self.joints[index].joint.kind = kind;
+        bodies.pushed[self.joints[index].joint.body as usize] = true;
+    }
+
+    /// Finds the contacts at the start of a substep and wakes what is touched.
+    pub fn begin_substep(&mut self, bodies: &mut Bodies, dt: f64, gravity: Vector64) {
+        // Impulses are forces times dt^2: the same force in a longer substep is more of them.
+        self.warm_factor = if self.dt > 0.0 { (dt / self.dt) * (dt / self.dt) } else { 1.0 };
+        self.dt = dt;
+        self.gravity = gravity.length();
+        self.islands.resize(bodies.len());
+        self.islands.wake_pushed(bodies);
+        loop {
+            self.finder.find(bodies, dt, self.gravity);
+            if !self.islands.wake_touched(bodies, self.finder.candidates(), &self.joints, dt) {
+                break;
+            }
+        }
+        self.finder.keep_impulses(self.warm_factor, dt * dt);
+        for contact in self.finder.contacts_mut() {
+            contact.approach = contact.opening(&bodies.velocities);
+        }
+    }
+
+    /// Shares each body among its contacts and applies the impulses kept from the last substep.
+    pub fn warm_start(&mut self, bodies: &mut Bodies) {
+        self.split_masses(bodies);
+        let (contacts, split) = (self.finder.contacts_mut(), &self.split);
+        self.jacobi.index(contacts, bodies.len());
+        self.jacobi.sweep(contacts, bodies.len(), |contact| {
+            contact.prepare(split);
+            contact.push(&contact.impulse)
+        });
+        for linked in &mut self.joints {
+            let (a, b) = linked.bodies();
+            let pushes = linked.prepare(bodies, &self.split, self.dt, self.warm_factor);
+            add_pair(&mut self.jacobi.sums, (a, b), pushes);
+        }
+        self.apply_displacements(bodies);
+    }
+
+    /// N = max(1, n/relaxation) for the n contacts and joints that act on a body in this substep.
+    fn split_masses(&mut self, bodies: &Bodies) {
+        self.counts.clear();
+        self.counts.resize(bodies.len(), 0);
+        let mut count = |body: u32| {
+            if body != NONE {
+                self.counts[body as usize] += 1;
+            }
+        };
+        for contact in self.finder.contacts() {
+            let near = 1e-3 * bodies.sizes[contact.a as usize];
+            let gap = contact.gap + contact.opening(&bodies.displacements).min(0.0);
+            if contact.impulse.normal > 0.0 || gap < near {
+                count(contact.a);
+                count(contact.b);
+            }
+        }
+        for (a, b) in self.joints.iter().map(Linked::bodies) {
+            count(a);
+            count(b);
+        }
+        let relaxation = self.settings.relaxation;
+        self.split.clear();
+        self.split.extend(bodies.responses.iter().zip(&self.counts).map(|(response, &count)| {
+            let shares = (f64::from(count) / relaxation).max(1.0);
+            Response { linear: response.linear * shares, angular: response.angular * shares }
+        }));
+    }
+
+    /// One Jacobi iteration of all contacts and joints on the displacements.
+    pub fn iterate(&mut self, bodies: &mut Bodies) {
+        let displacements = &bodies.displacements;
+        self.jacobi.sweep(self.finder.contacts_mut(), bodies.len(), |contact| contact.solve(displacements));
+        for linked in self.joints.iter_mut().filter(|linked| is_movable(linked, bodies)) {
+            let pushes = linked.solve(&bodies.displacements);
+            add_pair(&mut self.jacobi.sums, linked.bodies(), pushes);
+        }
+        self.apply_displacements(bodies);
+    }
+
+    fn apply_displacements(&mut self, bodies: &mut Bodies) {
+        self.jacobi.apply(&bodies.responses, &mut bodies.displacements);
+        let per_time = 1.0 / self.dt;
+        for (load, push) in bodies.contact_loads.iter_mut().zip(&self.jacobi.sums) {
+            *load += push.scaled(per_time);
+        }
+    }
+
+    /// Lets contacts rebound that were hit faster than gravity alone would in two substeps.
+    pub fn restitute(&mut self, bodies: &mut Bodies) {
+        let (dt, slowest) = (self.dt, 2.0 * self.gravity * self.dt);
+        if self.finder.contacts().iter().any(|contact| contact.rebounds(slowest)) {
+            for _ in 0..self.settings.restitution_iterations {
+                let velocities = &bodies.velocities;
+                self.jacobi.sweep(self.finder.contacts_mut(), bodies.len(), |contact| {
+                    if contact.rebounds(slowest) { contact.rebound(velocities, dt) } else { Default::default() }
+                });
+                self.jacobi.apply(&bodies.responses, &mut bodies.velocities);
+                for (load, push) in bodies.contact_loads.iter_mut().zip(&self.jacobi.sums) {
+                    *load += *push;
+                }
+            }
+        }
+        self.load_walls();
+    }
+
+    /// Adds the impulses of the substep to the walls they act on.
+    fn load_walls(&mut self) {
+        for contact in self.finder.contacts().iter().filter(|contact| contact.wall != NONE) {
+            let Impulse { normal, tangent, .. } = contact.impulse;
+            let normal = contact.normal * (normal / self.dt + contact.rebound);
+            self.wall_impulses[contact.wall as usize] -= normal + contact.normal.perp() * (tangent / self.dt);
+        }
+    }
+
+    /// Takes overlap out of the positions, without changing any velocity.
+    pub fn depenetrate(&mut self, bodies: &mut Bodies) {
+        let (slop, most) = (self.settings.slop, self.settings.depenetration_speed * self.dt);
+        let (displacements, sizes) = (&bodies.displacements, &bodies.sizes);
+        self.jacobi.sweep(self.finder.contacts_mut(), bodies.len(), |contact| {
+            let size = sizes[contact.a as usize];
+            let size = if contact.b == NONE { size } else { size.min(sizes[contact.b as usize]) };
+            contact.separate(displacements, slop * size, most)
+        });
+        for linked in self.joints.iter_mut().filter(|linked| is_movable(linked, bodies)) {
+            let pushes = linked.separate(bodies);
+            add_pair(&mut self.jacobi.sums, linked.bodies(), pushes);
+        }
+        self.corrections.clear();
+        self.corrections.resize(bodies.len(), Twist::ZERO);
+        self.jacobi.apply(&bodies.responses, &mut self.corrections);
+        for (pose, moved) in bodies.poses.iter_mut().zip(&self.corrections) {
+            pose.position += moved.linear;
+            pose.angle += moved.angular;
+        }
+    }
+
+    /// Ends a frame of length `frame_time` [s]: mean forces on walls, and sleep. Call it before
+    /// [`Bodies::finish_frame`].
+    pub fn finish_frame(&mut self, bodies: &mut Bodies, frame_time: f64) {
+        for (force, impulse) in self.wall_forces.iter_mut().zip(&mut self.wall_impulses) {
+            *force = std::mem::take(impulse) / frame_time;
+        }
+        if let Some(settings) = &self.settings.sleep {
+            let fell_asleep = self.islands.sleep(bodies, self.finder.contacts(), &self.joints, settings, frame_time);
+            if fell_asleep {
+                self.finder.freeze(bodies, self.dt);
+            }
+        }
+    }
+
+    /// Force of the bodies on each wall over the last frame, mean [N]; in the order of the walls.
+    pub fn wall_forces(&self) -> &[Vector64] {
+        &self.wall_forces
+    }
+
+    /// The contacts of the last substep between bodies that were awake.
+    pub fn points(&self) -> impl Iterator<Item = ContactPoint> + '_ {
+        let index = |index: u32| (index != NONE).then_some(index);
+        self.finder.contacts().iter().map(move |contact| ContactPoint {
+            body: contact.a,
+            other: index(contact.b),
+            wall: index(contact.wall),
+            normal: contact.normal,
+            gap: contact.gap,
+            normal_force: contact.impulse.normal / (self.dt * self.dt) + contact.rebound / self.dt,
+            friction_force: contact.impulse.tangent / (self.dt * self.dt),
+        })
+    }
+
+    /// Joints with the force on the first body [N] and the torque of the motor [N m] in the last substep.
+    pub fn joint_loads(&self) -> impl Iterator<Item = (Joint, Vector64, f64)> + '_ {
+        let square = self.dt * self.dt;
+        self.joints.iter().map(move |linked| (linked.joint, linked.force() / square, linked.motor / square))
+    }
+}
+
+fn is_movable(linked: &Linked, bodies: &Bodies) -> bool {
+    let (a, b) = linked.bodies();
+    let movable = |id: u32| entry(&bodies.responses, id) != Response::default();
+    movable(a) || movable(b)
+}
+
+fn add_pair(sums: &mut [Twist], (a, b): (u32, u32), (on_a, on_b): (Twist, Twist)) {
+    sums[a as usize] += on_a;
+    if b != NONE {
+        sums[b as usize] -= on_b;
+    }
+}

@@ -1,0 +1,171 @@
+//! Narrow phase: where two rounded convex pieces touch, or are about to.
+//!
+//! Vertices of each piece are tested against the faces of the other, both ways alike, so that
+//! neither piece is preferred and a mirrored pair gives mirrored contacts. Only pieces whose
+//! unrounded cores overlap (deep starts) fall back to a single separating face.
+
+use super::pieces::{HalfPlane, PieceView};
+use crate::math::Vector64;
+
+/// A place where two pieces touch or soon may.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Touch {
+    /// Unit normal, towards the first piece.
+    pub normal: Vector64,
+    /// Point on the surface of the first piece [m].
+    pub on_a: Vector64,
+    /// Point on the surface of the second piece [m].
+    pub on_b: Vector64,
+    /// Distance of the surfaces along the normal, negative when they overlap [m].
+    pub gap: f64,
+    /// Names the vertex that touches: for recognising the contact in the next substep.
+    pub feature: u32,
+}
+
+/// Marks a vertex of the second piece.
+const OF_SECOND: u32 = 1 << 31;
+
+/// Contacts of a piece with a half-plane.
+pub(super) fn against_half_plane(a: &PieceView, plane: &HalfPlane, margin: f64, out: &mut Vec<Touch>) {
+    for (k, &p) in a.vertices.iter().enumerate().filter(|&(k, _)| a.sampled[k]) {
+        let height = (p - plane.point).dot(plane.normal);
+        let gap = height - a.radius;
+        if gap < margin {
+            let (normal, on_a, on_b) = (plane.normal, p - plane.normal * a.radius, p - plane.normal * height);
+            out.push(Touch { normal, on_a, on_b, gap, feature: k as u32 });
+        }
+    }
+}
+
+/// Contacts of two pieces with gaps below `margin`.
+pub(super) fn between(a: &PieceView, b: &PieceView, margin: f64, out: &mut Vec<Touch>) {
+    let radii = a.radius + b.radius;
+    if !a.is_round() && !b.is_round() {
+        let (Some(of_b), Some(of_a)) = (separation(a, b, radii + margin), separation(b, a, radii + margin)) else {
+            return;
+        };
+        if of_a.max(of_b) < 0.0 {
+            return overlapping_cores(a, b, out);
+        }
+    }
+    vertices_on_faces(a, b, margin, out, |touch| touch);
+    vertices_on_faces(b, a, margin, out, Touch::reversed);
+    if out.is_empty() {
+        closest_vertices(a, b, margin, out);
+    }
+}
+
+impl Touch {
+    /// The same contact with the pieces named the other way round.
+    pub fn reversed(self) -> Touch {
+        Touch {
+            normal: -self.normal,
+            on_a: self.on_b,
+            on_b: self.on_a,
+            gap: self.gap,
+            feature: self.feature ^ OF_SECOND,
+        }
+    }
+}
+
+/// Largest separation of `a` from the faces of `b`; none as soon as it exceeds `limit`.
+fn separation(a: &PieceView, b: &PieceView, limit: f64) -> Option<f64> {
+    let mut largest = f64::NEG_INFINITY;
+    for (&v, &n) in b.vertices.iter().zip(b.normals) {
+        let distance = lowest(a, v, n);
+        if distance > limit {
+            return None;
+        }
+        largest = largest.max(distance);
+    }
+    Some(largest)
+}
+
+fn lowest(a: &PieceView, point: Vector64, normal: Vector64) -> f64 {
+    a.vertices.iter().map(|&p| (p - point).dot(normal)).fold(f64::INFINITY, f64::min)
+}
+
+/// Adds the vertices of `a` that lie over a face of `b`. `named` restores the order of the pieces.
+fn vertices_on_faces(a: &PieceView, b: &PieceView, margin: f64, out: &mut Vec<Touch>, named: impl Fn(Touch) -> Touch) {
+    let radii = a.radius + b.radius;
+    // A rounded vertex may reach a little past the end of a face; a disc ends exactly there.
+    let overhang = if a.is_round() { 0.0 } else { 0.25 * radii };
+    for (k, &p) in a.vertices.iter().enumerate().filter(|&(k, _)| a.sampled[k]) {
+        let Some((face, height)) = face_below(p, b) else { continue };
+        let (from, to, normal) = (b.vertices[face], b.vertices[(face + 1) % b.vertices.len()], b.normals[face]);
+        let tangent = normal.perp();
+        let (along, length) = ((p - from).dot(tangent), (to - from).dot(tangent));
+        let gap = height - radii;
+        let over_face = along >= -overhang && along <= length + overhang;
+        let known = |touch: &Touch| ((touch.on_a + touch.on_b) * 0.5 - p).dot(tangent).abs() < 0.5 * radii;
+        if over_face && gap < margin && !out.iter().any(known) {
+            let (on_a, on_b) = (p - normal * a.radius, p - normal * (height - b.radius));
+            out.push(named(Touch { normal, on_a, on_b, gap, feature: k as u32 }));
+        }
+    }
+}
+
+/// The face of a piece that a point is farthest above (or least below), and how far.
+fn face_below(p: Vector64, piece: &PieceView) -> Option<(usize, f64)> {
+    let mut best: Option<(usize, f64)> = None;
+    let mut cut = f64::NEG_INFINITY;
+    for (k, (&v, &n)) in piece.vertices.iter().zip(piece.normals).enumerate() {
+        let height = (p - v).dot(n);
+        if !piece.outer[k] {
+            cut = cut.max(height);
+        } else if best.is_none_or(|(_, highest)| height > highest) {
+            best = Some((k, height));
+        }
+    }
+    // Beyond a cut through the solid lies another of its pieces, which then has the say.
+    best.filter(|_| !piece.is_round() && cut <= 0.0)
+}
+
+/// Adds the closest pair of vertices: for discs, and for corners that meet.
+fn closest_vertices(a: &PieceView, b: &PieceView, margin: f64, out: &mut Vec<Touch>) {
+    let mut best: Option<(f64, usize, usize)> = None;
+    for (i, &p) in a.vertices.iter().enumerate().filter(|&(i, _)| a.sampled[i]) {
+        for (j, &q) in b.vertices.iter().enumerate().filter(|&(j, _)| b.sampled[j]) {
+            let square = (p - q).length_squared();
+            if best.is_none_or(|(least, ..)| square < least) {
+                best = Some((square, i, j));
+            }
+        }
+    }
+    let Some((square, i, j)) = best else { return };
+    let (p, q, distance) = (a.vertices[i], b.vertices[j], square.sqrt());
+    let gap = distance - a.radius - b.radius;
+    if gap < margin {
+        let normal = if distance > 0.0 { (p - q) / distance } else { Vector64::Y };
+        let feature = if b.is_round() && !a.is_round() { j as u32 | OF_SECOND } else { i as u32 };
+        out.push(Touch { normal, on_a: p - normal * a.radius, on_b: q + normal * b.radius, gap, feature });
+    }
+}
+
+/// Cores that overlap: one direction out, over the face that needs the shortest way.
+fn overlapping_cores(a: &PieceView, b: &PieceView, out: &mut Vec<Touch>) {
+    let (over_b, over_a) = (shallowest_face(a, b), shallowest_face(b, a));
+    let least = |way: Option<(usize, f64)>| way.map_or(f64::NEG_INFINITY, |(_, depth)| depth);
+    let radii = a.radius + b.radius;
+    let mut push_out = |a: &PieceView, b: &PieceView, face: usize, named: fn(Touch) -> Touch| {
+        let (from, normal) = (b.vertices[face], b.normals[face]);
+        for (k, &p) in a.vertices.iter().enumerate() {
+            let height = (p - from).dot(normal);
+            if height < radii {
+                let (on_a, on_b) = (p - normal * a.radius, p - normal * (height - b.radius));
+                out.push(named(Touch { normal, on_a, on_b, gap: height - radii, feature: k as u32 }));
+            }
+        }
+    };
+    match (over_b, over_a) {
+        (Some((face, depth)), _) if depth >= least(over_a) => push_out(a, b, face, |touch| touch),
+        (_, Some((face, _))) => push_out(b, a, face, Touch::reversed),
+        _ => {}
+    }
+}
+
+/// The outer face of `b` with the largest separation from `a`.
+fn shallowest_face(a: &PieceView, b: &PieceView) -> Option<(usize, f64)> {
+    let faces = (0..b.vertices.len()).filter(|&k| b.outer[k]);
+    faces.map(|k| (k, lowest(a, b.vertices[k], b.normals[k]))).reduce(|x, y| if y.1 > x.1 { y } else { x })
+}

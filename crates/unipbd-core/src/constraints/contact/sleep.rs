@@ -1,0 +1,154 @@
+//! Sleep by islands: bodies that touch fall asleep together, once all of them have been slow for a
+//! while, and wake together. Impulses are kept, so that a woken pile stands as it stood.
+
+use super::joint::Linked;
+use super::pieces::NONE;
+use super::point::Contact;
+use crate::bodies::Bodies;
+
+/// When bodies fall asleep.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SleepSettings {
+    /// Speed of the fastest point of a body, |v| + |w| R, below which it counts as at rest [m/s].
+    pub speed: f64,
+    /// How long a whole island must have been at rest [s].
+    pub delay: f64,
+}
+
+impl Default for SleepSettings {
+    fn default() -> Self {
+        SleepSettings { speed: 0.02, delay: 0.5 }
+    }
+}
+
+/// Rest times of bodies, and which bodies fell asleep together.
+#[derive(Clone, Default)]
+pub(super) struct Islands {
+    /// How long each body has been at rest [s].
+    rest: Vec<f64>,
+    /// The island each sleeping body belongs to.
+    island: Vec<u32>,
+    parents: Vec<u32>,
+}
+
+impl Islands {
+    pub fn resize(&mut self, bodies: usize) {
+        self.rest.resize(bodies, 0.0);
+        self.island.resize(bodies, NONE);
+    }
+
+    /// Wakes the islands of bodies that were pushed.
+    pub fn wake_pushed(&mut self, bodies: &mut Bodies) {
+        for id in 0..bodies.len() {
+            if bodies.pushed[id] && bodies.asleep[id] {
+                self.wake_island(bodies, id);
+            }
+        }
+    }
+
+    /// Wakes the islands that a moving body touches in this substep; tells whether there were any.
+    pub fn wake_touched(&mut self, bodies: &mut Bodies, contacts: &[Contact], joints: &[Linked], dt: f64) -> bool {
+        let mut woken = false;
+        let mut touch = |islands: &mut Islands, bodies: &mut Bodies, a: u32, b: u32| {
+            for (moving, still) in [(a, b), (b, a)] {
+                if still != NONE && bodies.asleep[still as usize] && bodies.is_active(moving as usize) {
+                    islands.wake_island(bodies, still as usize);
+                    woken = true;
+                }
+            }
+        };
+        for contact in contacts.iter().filter(|contact| contact.b != NONE) {
+            if bodies.asleep[contact.a as usize] || bodies.asleep[contact.b as usize] {
+                let approach = contact.opening(&bodies.velocities).min(0.0) * dt;
+                if contact.gap + approach < 1e-3 * bodies.sizes[contact.a as usize] {
+                    touch(self, bodies, contact.a, contact.b);
+                }
+            }
+        }
+        for (a, b) in joints.iter().map(Linked::bodies).filter(|&(_, b)| b != NONE) {
+            touch(self, bodies, a, b);
+        }
+        woken
+    }
+
+    fn wake_island(&mut self, bodies: &mut Bodies, id: usize) {
+        let island = self.island[id];
+        for other in 0..bodies.len() {
+            if bodies.asleep[other] && self.island[other] == island {
+                bodies.wake(other);
+                self.rest[other] = 0.0;
+            }
+        }
+    }
+
+    /// At the end of a frame: puts islands to sleep that have been at rest long enough.
+    pub fn sleep(
+        &mut self,
+        bodies: &mut Bodies,
+        contacts: &[Contact],
+        joints: &[Linked],
+        settings: &SleepSettings,
+        frame_time: f64,
+    ) -> bool {
+        self.measure_rest(bodies, settings, frame_time);
+        if !self.rest.iter().zip(&bodies.asleep).any(|(&rest, &asleep)| rest >= settings.delay && !asleep) {
+            return false;
+        }
+        self.parents.clear();
+        self.parents.extend(0..bodies.len() as u32);
+        let touching = contacts.iter().filter(|contact| contact.impulse.normal > 0.0).map(|c| (c.a, c.b));
+        for (a, b) in touching.chain(joints.iter().map(Linked::bodies)).filter(|&(_, b)| b != NONE) {
+            self.unite(bodies, a, b);
+        }
+        self.put_to_rest(bodies, settings)
+    }
+
+    fn measure_rest(&mut self, bodies: &Bodies, settings: &SleepSettings, frame_time: f64) {
+        for id in 0..bodies.len() {
+            let velocity = &bodies.velocities[id];
+            let speed = velocity.linear.length() + velocity.angular.abs() * bodies.reaches[id];
+            let still = speed < settings.speed && !bodies.pushed[id];
+            self.rest[id] = if still { self.rest[id] + frame_time } else { 0.0 };
+        }
+    }
+
+    /// Links two dynamic bodies; what touches a moving script cannot rest.
+    fn unite(&mut self, bodies: &Bodies, a: u32, b: u32) {
+        let scripted = |id: u32| !bodies.is_dynamic(id as usize) && bodies.is_active(id as usize);
+        match (bodies.is_dynamic(a as usize), bodies.is_dynamic(b as usize)) {
+            (true, true) => {
+                let (a, b) = (self.root(a), self.root(b));
+                self.parents[a.max(b) as usize] = a.min(b);
+            }
+            (true, false) if scripted(b) => self.rest[a as usize] = 0.0,
+            (false, true) if scripted(a) => self.rest[b as usize] = 0.0,
+            _ => {}
+        }
+    }
+
+    fn root(&mut self, mut id: u32) -> u32 {
+        while self.parents[id as usize] != id {
+            let above = self.parents[self.parents[id as usize] as usize];
+            self.parents[id as usize] = above;
+            id = above;
+        }
+        id
+    }
+
+    fn put_to_rest(&mut self, bodies: &mut Bodies, settings: &SleepSettings) -> bool {
+        let roots: Vec<u32> = (0..bodies.len() as u32).map(|id| self.root(id)).collect();
+        let mut least = vec![f64::INFINITY; bodies.len()];
+        for (id, &root) in roots.iter().enumerate() {
+            least[root as usize] = least[root as usize].min(self.rest[id]);
+        }
+        let mut any = false;
+        for (id, &root) in roots.iter().enumerate() {
+            if least[root as usize] >= settings.delay && bodies.is_dynamic(id) && !bodies.asleep[id] {
+                bodies.fall_asleep(id);
+                self.island[id] = root;
+                any = true;
+            }
+        }
+        any
+    }
+}

@@ -1,0 +1,113 @@
+use super::world::{GRAVITY, World, at, body, floor, unit_box};
+use unipbd_core::bodies::{BodySpec, MassSpec, Surface};
+use unipbd_core::shapes::{Shape, Wall};
+
+fn stack(height: u32) -> World {
+    let mut world = World::new(&[floor(Surface::with_friction(0.5))]);
+    for k in 0..height {
+        world.add(unit_box(at(0.0, 0.5 + f64::from(k))));
+    }
+    world
+}
+
+/// Rows of boxes, each standing on two; mirrored about x = 0.
+fn pyramid(rows: u32) -> World {
+    let mut world = World::new(&[floor(Surface::with_friction(0.5))]);
+    for row in 0..rows {
+        for k in 0..rows - row {
+            let x = 1.05 * (f64::from(k) - 0.5 * f64::from(rows - row - 1));
+            world.add(unit_box(at(x, 0.5 + f64::from(row))));
+        }
+    }
+    world
+}
+
+fn mirror_error(world: &World, rows: u32) -> f64 {
+    let (mut first, mut error) = (0, 0.0f64);
+    for row in 0..rows {
+        let count = rows - row;
+        for k in 0..count {
+            let (left, right) = (world.position(first + k), world.position(first + count - 1 - k));
+            error = error.max((left.x + right.x).abs()).max((left.y - right.y).abs());
+        }
+        first += count;
+    }
+    error
+}
+
+#[test]
+fn twenty_boxes_stand() {
+    let mut world = stack(20);
+    world.run(19.0);
+    let speed = world.fastest_in(1.0);
+    let drift = world.ids().map(|id| world.position(id).x.abs()).fold(0.0, f64::max);
+    println!("stack of 20: speed {speed:.1e} m/s, drift {drift:.1e} m, overlap {:.1e} m", world.penetration());
+    assert!(drift <= 0.02 && world.penetration() <= 1e-3);
+}
+
+#[test]
+fn disturbed_stack_of_ten_comes_to_rest() {
+    let mut world = World::new(&[floor(Surface::with_friction(0.5))]);
+    for k in 0..10 {
+        world.add(unit_box(at(0.05 * f64::from(k).sin(), 0.52 + 1.02 * f64::from(k))));
+    }
+    world.run(19.0);
+    let speed = world.fastest_in(1.0);
+    println!("stack of 10, dropped unevenly: speed {speed:.1e} m/s");
+    assert!(world.position(9).y > 9.4 && speed < 0.02);
+}
+
+#[test]
+fn pyramid_of_210_boxes_stands_mirrored() {
+    let mut world = pyramid(20);
+    world.run(7.0);
+    let speed = world.fastest_in(1.0);
+    let (overlap, mirror) = (world.penetration(), mirror_error(&world, 20));
+    println!("pyramid of 210, 8 s: speed {speed:.1e} m/s, overlap {overlap:.1e} m, mirror error {mirror:.1e} m");
+    assert!(overlap <= 1e-3 && mirror <= 1e-9 && speed <= 1e-6);
+}
+
+#[test]
+#[ignore = "20 s of simulated time; the 8 s above are the quick version"]
+fn pyramid_of_210_boxes_stands_20_seconds() {
+    let mut world = pyramid(20);
+    let started = std::time::Instant::now();
+    world.run(19.0);
+    let speed = world.fastest_in(1.0);
+    let (overlap, mirror) = (world.penetration(), mirror_error(&world, 20));
+    println!("pyramid of 210, 20 s: speed {speed:.1e} m/s, overlap {overlap:.1e} m, mirror error {mirror:.1e} m");
+    println!("{:.2} ms per frame", started.elapsed().as_secs_f64() * 1e3 / 1200.0);
+    assert!(overlap <= 1e-3 && mirror <= 1e-9 && speed <= 1e-6);
+}
+
+#[test]
+fn heavy_box_stands_on_a_light_one() {
+    for ratio in [10.0, 100.0] {
+        let mut world = World::new(&[floor(Surface::with_friction(0.5))]);
+        world.add(unit_box(at(0.0, 0.5)));
+        world.add(BodySpec { mass: MassSpec::Density(1000.0 * ratio), ..unit_box(at(0.0, 1.5)) });
+        world.run(10.0);
+        let (light, heavy) = (world.position(0), world.position(1));
+        println!("1:{ratio}: heights {:.5} {:.5}, speed {:.1e}", light.y, heavy.y, world.fastest());
+        assert!((light.y - 0.5).abs() < 2e-3 && (heavy.y - 1.5).abs() < 4e-3 && heavy.x.abs() < 0.02);
+    }
+}
+
+#[test]
+fn settled_discs_hardly_overlap() {
+    let mut world = World::new(&Wall::tank(at(0.0, 0.0), at(10.0, 60.0), Surface::default()));
+    for k in 0..400u32 {
+        let jitter = 0.1 * (f64::from(k) * 12.9898).sin();
+        let place = at(0.5 + 0.6 * f64::from(k % 15) + jitter, 0.3 + 0.6 * f64::from(k / 15));
+        world.add(body(Shape::Disc { radius: 0.25 }, place, Surface::with_friction(0.3)));
+    }
+    world.run(10.0);
+    let weight: f64 = world.bodies.views().iter().map(|b| b.mass * GRAVITY).sum();
+    let carried = -world.contacts.wall_forces()[2].y;
+    println!(
+        "400 discs: overlap {:.1e} of 0.5 m, speed {:.1e} m/s, weight {weight:.0} on the floor {carried:.0} N",
+        world.penetration(),
+        world.fastest()
+    );
+    assert!(world.penetration() < 5e-3 && world.ids().all(|id| world.position(id).y > 0.24));
+}
