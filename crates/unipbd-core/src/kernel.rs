@@ -1,30 +1,22 @@
-//! The smoothing kernel: Wendland C2 in two dimensions (Wendland 1995; normalisation 7/(pi h^2)).
+//! The smoothing kernel of a run: Wendland C2, for density and gradient alike.
 //!
-//! The same function gives the density and its gradient. (Density by poly6 with the gradient of the
-//! spiky kernel, the pair of Müller et al. 2003, is inconsistent: a column at rest keeps boiling.)
-
-use std::f64::consts::PI;
+//! (Density by poly6 with the gradient of the spiky kernel, the pair of Müller et al. 2003, is
+//! inconsistent: a column at rest keeps boiling.)
 
 use crate::math::{Real, real};
+use crate::simd::{Shape, WendlandC2};
 
-/// Wendland C2 kernel of radius h: W = 7/(pi h^2) (1-q)^4 (1+4q), q = r/h.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// A kernel of radius h, for single pairs; passes over many pairs take its [`shape`](Kernel::shape).
+#[derive(Clone, Copy, Debug)]
 pub struct Kernel {
     radius: Real,
-    inverse_radius: Real,
-    weight: Real,
-    slope: Real,
+    shape: WendlandC2,
 }
 
 impl Kernel {
     /// The kernel that vanishes at distance `radius` [m].
     pub fn new(radius: f64) -> Self {
-        Kernel {
-            radius: real(radius),
-            inverse_radius: real(1.0 / radius),
-            weight: real(7.0 / (PI * radius * radius)),
-            slope: real(-140.0 / (PI * radius * radius * radius * radius)),
-        }
+        Kernel { radius: real(radius), shape: WendlandC2::new(radius) }
     }
 
     /// Radius h [m].
@@ -32,19 +24,21 @@ impl Kernel {
         self.radius
     }
 
+    /// The formula, for passes over pairs.
+    pub fn shape(&self) -> WendlandC2 {
+        self.shape
+    }
+
     /// W at distance r [1/m^2].
     #[inline]
     pub fn value(&self, r: Real) -> Real {
-        let t = (1.0 - r * self.inverse_radius).max(0.0);
-        let t2 = t * t;
-        self.weight * (t2 * t2) * (1.0 + 4.0 * (r * self.inverse_radius))
+        self.shape.at(r * r).0 * self.shape.value_scale()
     }
 
     /// g at distance r, where grad W = g x [1/m^4]; never positive.
     #[inline]
     pub fn slope(&self, r: Real) -> Real {
-        let t = (1.0 - r * self.inverse_radius).max(0.0);
-        self.slope * (t * t * t)
+        self.shape.at(r * r).1 * self.shape.slope_scale()
     }
 
     /// Sums over the square lattice of this spacing around a particle, itself left out.
@@ -78,6 +72,7 @@ pub struct LatticeSums {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     #[test]
     fn integrates_to_one() {

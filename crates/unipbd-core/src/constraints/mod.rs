@@ -15,13 +15,14 @@ use std::ops::BitOr;
 
 pub use batch::{Batch, Constraint};
 pub use corrections::Corrections;
-pub use density::{Density, DensityMaterial, DensitySettings};
+pub use density::{Density, DensityMaterial, DensitySettings, Repulsion};
 
 use crate::math::{Real, Vector};
 use crate::neighbors::Neighbors;
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
 use crate::rows::RowIndex;
+use crate::simd::Pairs;
 use crate::walls::Walls;
 
 /// What a group needs from the loop; what nobody needs is not computed.
@@ -68,6 +69,13 @@ pub struct Substep<'a> {
     pub walls: &'a Walls,
     /// How to spread work over threads.
     pub parallelism: Parallelism,
+}
+
+impl<'a> Substep<'a> {
+    /// The neighbour pairs of the dense rows, for the passes of [`simd`](crate::simd).
+    pub fn pairs(&self) -> Pairs<'a> {
+        Pairs::new(self.neighbors.list(), self.neighbors.periodic(), self.parallelism)
+    }
 }
 
 /// A batch of constraints that are solved together.

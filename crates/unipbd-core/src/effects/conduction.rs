@@ -3,13 +3,18 @@ use crate::constraints::Substep;
 use crate::kernel::Kernel;
 use crate::math::{Real, real};
 use crate::scene::Scene;
+use crate::simd::{self, Weights};
 
 /// Conduction of heat between gas particles, the SPH Laplacian of Brookshaw 1985:
-/// dT_i/dt = kappa sum_j 2 V (T_i - T_j) g_ij, with grad W = g x.
+/// dT_i/dt = sum_j 2 V kappa_ij (T_i - T_j) g_ij, with grad W = g x and kappa_ij the geometric mean of
+/// the two diffusivities, so that heat is kept.
 pub struct Conduction {
     kernel: Kernel,
     volume: Real,
-    diffusivity: Vec<Real>,
+    /// Square root of the diffusivity, per material.
+    root: Vec<Real>,
+    weights: Vec<Real>,
+    sums: Vec<Real>,
 }
 
 impl Conduction {
@@ -19,7 +24,9 @@ impl Conduction {
         any(&diffusivity).then(|| Conduction {
             kernel: Kernel::new(scene.solver.kernel_radius * scene.spacing),
             volume: real(scene.spacing * scene.spacing),
-            diffusivity,
+            root: diffusivity.iter().map(|value| value.sqrt()).collect(),
+            weights: Vec::new(),
+            sums: Vec::new(),
         })
     }
 }
@@ -31,18 +38,16 @@ impl Effect for Conduction {
 
     fn apply(&mut self, now: Substep<'_>, out: &mut Changes) {
         let particles = now.particles;
-        let (positions, temperatures) = (particles.positions(), particles.temperatures());
-        let diffusivity = |row: usize| self.diffusivity[usize::from(particles.materials()[row])];
-        now.parallelism.update(&mut out.temperature, |i, change| {
-            let mut sum = 0.0;
-            now.neighbors.for_each(i, |j| {
-                let pair = diffusivity(i).min(diffusivity(j));
-                if pair > 0.0 {
-                    let slope = self.kernel.slope((positions[i] - positions[j]).length());
-                    sum += pair * (temperatures[i] - temperatures[j]) * slope;
-                }
-            });
-            *change += now.dt * 2.0 * self.volume * sum;
-        });
+        let rows = particles.dense();
+        let root = |row: usize| self.root[usize::from(particles.materials()[row])];
+        self.weights.resize(rows, 0.0);
+        self.sums.resize(rows, 0.0);
+        let weights = &mut self.weights;
+        now.parallelism.fill(weights, root);
+        let weights = Weights::Column(&self.weights);
+        let (shape, temperatures) = (self.kernel.shape(), particles.temperatures());
+        simd::laplacian(now.pairs(), shape, particles.positions(), temperatures, weights, &mut self.sums);
+        let (sums, factor) = (&self.sums, now.dt * 2.0 * self.volume);
+        now.parallelism.update(&mut out.temperature, |row, change| *change += factor * root(row) * sums[row]);
     }
 }

@@ -3,6 +3,7 @@ use crate::constraints::Substep;
 use crate::kernel::Kernel;
 use crate::math::{Real, Vector, real};
 use crate::scene::Scene;
+use crate::simd;
 
 /// Part of the mean vorticity per spacing below which its gradient has no clear direction.
 const SOFTENING: Real = 0.02;
@@ -15,6 +16,8 @@ pub struct VorticityConfinement {
     spacing: Real,
     strength: Vec<Real>,
     vorticity: Vec<Real>,
+    size: Vec<Real>,
+    gradient: Vec<Vector>,
 }
 
 impl VorticityConfinement {
@@ -27,22 +30,23 @@ impl VorticityConfinement {
             spacing: real(scene.spacing),
             strength,
             vorticity: Vec::new(),
+            size: Vec::new(),
+            gradient: Vec::new(),
         })
     }
 
-    /// omega_i = sum_j V x_ij x (v_j - v_i) g_ij [1/s].
+    /// omega_i = sum_j V x_ij x (v_j - v_i) g_ij [1/s], and its size.
     fn measure(&mut self, now: Substep<'_>) {
+        let rows = now.particles.dense();
+        self.vorticity.resize(rows, 0.0);
+        self.size.resize(rows, 0.0);
+        self.gradient.resize(rows, Vector::ZERO);
         let (positions, velocities) = (now.particles.positions(), now.particles.velocities());
-        let (kernel, volume) = (self.kernel, self.volume);
-        self.vorticity.resize(now.particles.dense(), 0.0);
-        now.parallelism.update(&mut self.vorticity, |i, vorticity| {
-            let mut sum = 0.0;
-            now.neighbors.for_each(i, |j| {
-                let difference = positions[i] - positions[j];
-                sum += difference.perp_dot(velocities[j] - velocities[i]) * kernel.slope(difference.length());
-            });
-            *vorticity = sum * volume;
-        });
+        simd::vorticity(now.pairs(), self.kernel.shape(), positions, velocities, &mut self.vorticity);
+        let (vorticity, volume) = (&mut self.vorticity, self.volume);
+        now.parallelism.update(vorticity, |_, vorticity| *vorticity *= volume);
+        let vorticity = &self.vorticity;
+        now.parallelism.fill(&mut self.size, |row| vorticity[row].abs());
     }
 }
 
@@ -61,22 +65,14 @@ impl Effect for VorticityConfinement {
             return;
         }
         let positions = now.particles.positions();
-        let materials = now.particles.materials();
-        now.parallelism.update(&mut out.velocity, |i, change| {
-            let strength = self.strength[usize::from(materials[i])];
-            if strength == 0.0 {
-                return;
-            }
-            let own = self.vorticity[i];
-            let mut gradient = Vector::ZERO;
-            now.neighbors.for_each(i, |j| {
-                let difference = positions[i] - positions[j];
-                let slope = self.kernel.slope(difference.length());
-                gradient += difference * (slope * (self.vorticity[j].abs() - own.abs()));
-            });
-            gradient *= self.volume;
+        simd::difference_gradient(now.pairs(), self.kernel.shape(), positions, &self.size, &mut self.gradient);
+        let (materials, gradients) = (now.particles.materials(), &self.gradient);
+        now.parallelism.update(&mut out.velocity, |row, change| {
+            let strength = self.strength[usize::from(materials[row])];
+            let gradient = gradients[row] * self.volume;
             let direction = gradient / (gradient.length() + floor);
-            *change += Vector::new(direction.y, -direction.x) * (now.dt * strength * self.spacing * own);
+            let push = now.dt * strength * self.spacing * self.vorticity[row];
+            *change += Vector::new(direction.y, -direction.x) * push;
         });
     }
 }

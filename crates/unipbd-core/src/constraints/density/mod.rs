@@ -8,7 +8,7 @@
 mod settings;
 mod solve;
 
-pub use settings::{DensityMaterial, DensitySettings};
+pub use settings::{DensityMaterial, DensitySettings, Repulsion};
 
 use super::{ConstraintGroup, Corrections, DensityColumns, Needs, Substep};
 use crate::kernel::Kernel;
@@ -27,6 +27,8 @@ pub struct Density {
     multiplier: Vec<Real>,
     step: Vec<Real>,
     wall_gradient: Vec<Vector>,
+    /// Repulsion strength by row.
+    strength: Vec<Real>,
 }
 
 /// Kernel sums over the neighbours of each row, the row itself left out.
@@ -58,6 +60,7 @@ impl Density {
             multiplier: Vec::new(),
             step: Vec::new(),
             wall_gradient: Vec::new(),
+            strength: Vec::new(),
         }
     }
 
@@ -97,6 +100,7 @@ impl ConstraintGroup for Density {
         self.sum_kernels(now);
         self.step_multipliers(now);
         self.correct(now, out);
+        self.repel(now, out);
     }
 
     fn violation(&self) -> Option<f64> {

@@ -14,6 +14,10 @@ pub struct DensitySettings {
     pub volume: Real,
     /// Where gradients are taken.
     pub gradients: GradientPoint,
+    /// The inverse mass of all dense particles, where they have but one [1/kg].
+    pub uniform_inverse_mass: Option<Real>,
+    /// Pair repulsion, where any material has it.
+    pub repulsion: Option<Repulsion>,
     /// Per material.
     pub materials: Vec<DensityMaterial>,
 }
@@ -29,15 +33,25 @@ pub struct DensityMaterial {
     pub gate: Real,
     /// Floor of the denominator [1/(kg m^2)]: keeps thin places from being thrown about.
     pub response_min: Real,
-    /// Pair repulsion below 0.8 spacings, as a fraction of the overlap.
+    /// Repulsion strength; the product of two, times an inverse mass, is the part of its overlap that
+    /// a pair gives back per substep [kg^1/2].
     pub repulsion: Real,
+}
+
+/// Repulsion of pairs that have come too near.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Repulsion {
+    /// Distance below which a pair overlaps [m].
+    pub reach: Real,
 }
 
 /// The gas constraint is off below this density error: the edge of a plume.
 const GAS_GATE: f64 = -0.3;
 /// The denominator of a gas particle is at least this part of its value at rest.
 const GAS_RESPONSE_FLOOR: f64 = 0.5;
-/// Part of the overlap below 0.8 spacings that a pair of gas particles gives back per substep.
+/// Gas particles nearer than this many spacings repel each other...
+const REPULSION_REACH: f64 = 0.8;
+/// ...by this part of their overlap per substep.
 const GAS_REPULSION: f64 = 0.3;
 /// Relaxation that is stable with a free surface.
 const LIQUID_RELAXATION: f64 = 0.5;
@@ -58,6 +72,8 @@ impl DensitySettings {
             spacing: scene.spacing,
             volume: real(volume),
             gradients: scene.solver.gradients.unwrap_or(default_gradients),
+            uniform_inverse_mass: uniform_mass(scene).map(|mass| real(1.0 / mass)),
+            repulsion: (!scene.gas.is_empty()).then(|| Repulsion { reach: real(REPULSION_REACH * scene.spacing) }),
             materials: scene.materials().map(|material| DensityMaterial::new(material, scene, rest_response)).collect(),
         }
     }
@@ -66,6 +82,9 @@ impl DensitySettings {
 impl DensityMaterial {
     fn new(material: MaterialRef<'_>, scene: &Scene, rest_response: f64) -> Self {
         let mass = material.density() * scene.spacing * scene.spacing;
+        // The lightest gas sets the force of a pair: it gives back the full part, a heavier one less.
+        let lightest = scene.gas.iter().map(|gas| gas.density).fold(f64::INFINITY, f64::min);
+        let lightest = lightest * scene.spacing * scene.spacing;
         let relaxation = |default: f64| real(scene.solver.relaxation.unwrap_or(default));
         match material.phase() {
             Phase::Liquid => DensityMaterial {
@@ -80,7 +99,7 @@ impl DensityMaterial {
                 multiplier_min: Real::NEG_INFINITY,
                 gate: real(GAS_GATE),
                 response_min: real(GAS_RESPONSE_FLOOR * rest_response / mass),
-                repulsion: real(GAS_REPULSION),
+                repulsion: real((GAS_REPULSION * lightest).sqrt()),
             },
             Phase::Smoke | Phase::Rigid | Phase::Solid => DensityMaterial {
                 relaxation: 0.0,
@@ -91,4 +110,12 @@ impl DensityMaterial {
             },
         }
     }
+}
+
+/// The mass of every dense particle, if it is the same for all and none is moved by a script [kg].
+fn uniform_mass(scene: &Scene) -> Option<f64> {
+    let mut densities = scene.materials().filter(|material| material.phase().is_dense()).map(|m| m.density());
+    let first = densities.next()?;
+    let uniform = scene.emitter.is_empty() && densities.all(|density| density == first);
+    uniform.then_some(first * scene.spacing * scene.spacing)
 }

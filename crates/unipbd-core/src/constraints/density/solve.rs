@@ -2,33 +2,28 @@
 
 use super::{Density, DensityMaterial};
 use crate::constraints::{Corrections, Substep};
-use crate::math::{Real, Vector};
-
-/// Pairs closer than this many spacings repel each other where their material says so.
-const REPULSION_REACH: Real = 0.8;
+use crate::math::Real;
+use crate::scene::GradientPoint;
+use crate::simd::{self, DensityInput, DensityOutput, Weights};
 
 impl Density {
     /// Pass 1: sums of the kernel, its gradient and the response of the neighbours.
     pub(super) fn sum_kernels(&mut self, now: Substep<'_>) {
-        let (kernel, list) = (self.kernel, now.neighbors);
-        let positions = &now.particles.positions()[..now.particles.dense()];
-        let gradient_positions = self.gradient_positions(now);
-        let inverse_masses = now.particles.inverse_masses();
+        let positions = now.particles.positions();
+        let input = DensityInput {
+            positions,
+            gradient_positions: match self.settings.gradients {
+                GradientPoint::Predicted => None,
+                GradientPoint::Start => Some(now.particles.starts()),
+            },
+            weights: match self.settings.uniform_inverse_mass {
+                Some(inverse_mass) => Weights::Uniform(inverse_mass),
+                None => Weights::Column(now.particles.inverse_masses()),
+            },
+        };
         let sums = &mut self.sums;
-        now.parallelism.chunks3(&mut sums.value, &mut sums.gradient, &mut sums.response, |first, s, g, q| {
-            for k in 0..s.len() {
-                let i = first + k;
-                let (mut value, mut gradient, mut response) = (0.0, Vector::ZERO, 0.0);
-                list.for_each(i, |j| {
-                    value += kernel.value((positions[i] - positions[j]).length());
-                    let difference = gradient_positions[i] - gradient_positions[j];
-                    let step = difference * kernel.slope(difference.length());
-                    gradient += step;
-                    response += inverse_masses[j] * step.length_squared();
-                });
-                (s[k], g[k], q[k]) = (value, gradient, response);
-            }
-        });
+        let out = DensityOutput { value: &mut sums.value, gradient: &mut sums.gradient, response: &mut sums.response };
+        simd::density(now.pairs(), self.kernel.shape(), input, out);
     }
 
     /// Pass 2: density errors and the relaxed step of each multiplier.
@@ -69,27 +64,30 @@ impl Density {
 
     /// Pass 3: displacements, gathered per row, so that momentum is kept with unequal masses too.
     pub(super) fn correct(&mut self, now: Substep<'_>, out: &mut Corrections) {
-        let (kernel, volume, list) = (self.kernel, self.settings.volume, now.neighbors);
-        let reach = REPULSION_REACH * self.settings.spacing as Real;
         let positions = self.gradient_positions(now);
-        let inverse_masses = now.particles.inverse_masses();
-        let (material_of, materials) = (now.particles.materials(), &self.settings.materials);
-        let (steps, walls) = (&self.step, &self.wall_gradient);
+        let sums = &mut self.sums.gradient;
+        simd::correction(now.pairs(), self.kernel.shape(), positions, &self.step, sums);
+        let (sums, steps, walls) = (&self.sums.gradient, &self.step, &self.wall_gradient);
+        let (volume, inverse_masses) = (self.settings.volume, now.particles.inverse_masses());
         let rows = now.particles.dense();
         now.parallelism.update(&mut out.displacements_mut()[..rows], |i, displacement| {
-            let repulsion = materials[usize::from(material_of[i])].repulsion;
-            let (mut sum, mut push) = (Vector::ZERO, Vector::ZERO);
-            list.for_each(i, |j| {
-                let difference = positions[i] - positions[j];
-                let r = difference.length();
-                sum += difference * (kernel.slope(r) * (steps[i] + steps[j]));
-                if r < reach && repulsion > 0.0 {
-                    push +=
-                        direction(difference, r, i < j) * ((reach - r) * share(inverse_masses[i], inverse_masses[j]));
-                }
-            });
-            *displacement -= inverse_masses[i] * (sum * volume + walls[i] * steps[i]);
-            *displacement += push * repulsion;
+            *displacement -= inverse_masses[i] * (sums[i] * volume + walls[i] * steps[i]);
+        });
+    }
+
+    /// Keeps gas particles apart: below 0.8 spacings a pair gives back a part of its overlap.
+    pub(super) fn repel(&mut self, now: Substep<'_>, out: &mut Corrections) {
+        let Some(repulsion) = self.settings.repulsion else { return };
+        let (materials, material_of) = (&self.settings.materials, now.particles.materials());
+        self.strength.resize(now.particles.dense(), 0.0);
+        now.parallelism.fill(&mut self.strength, |i| materials[usize::from(material_of[i])].repulsion);
+        let positions = self.gradient_positions(now);
+        let (reach, strengths) = (repulsion.reach, Weights::Column(&self.strength));
+        simd::repulsion(now.pairs(), reach, positions, strengths, &mut self.sums.gradient);
+        let (sums, strength) = (&self.sums.gradient, &self.strength);
+        let inverse_masses = now.particles.inverse_masses();
+        now.parallelism.update(&mut out.displacements_mut()[..strength.len()], |i, displacement| {
+            *displacement += sums[i] * (strength[i] * inverse_masses[i]);
         });
     }
 }
@@ -129,22 +127,4 @@ impl DensityMaterial {
         let least = if inverse_mass == 0.0 { 0.0 } else { self.multiplier_min };
         (old + self.relaxation * error / response.max(self.response_min)).max(least)
     }
-}
-
-/// From the second point to the first; coincident points part along x, the lower row to the left.
-#[inline]
-fn direction(difference: Vector, r: Real, first: bool) -> Vector {
-    if r > 0.0 {
-        difference / r
-    } else if first {
-        -Vector::X
-    } else {
-        Vector::X
-    }
-}
-
-/// Part of a pair's displacement that the first of two particles takes.
-#[inline]
-fn share(own: Real, other: Real) -> Real {
-    if own + other > 0.0 { 2.0 * own / (own + other) } else { 0.0 }
 }
