@@ -17,6 +17,7 @@
 //! path or number of threads is in the file, so the same run gives the same bytes.
 
 mod background;
+mod convert;
 mod destination;
 mod encode;
 mod error;
@@ -44,7 +45,7 @@ pub use error::RecordError;
 pub use fields::{Fields, UnknownField};
 pub use header::Header;
 
-pub(crate) use encode::kind_name;
+pub(crate) use convert::kind_name;
 pub(crate) use header::{METADATA, SCENE_ATTACHMENT};
 pub(crate) use messages::{Level, Log, POINT_STRIDE, PointCloud, unpack_position};
 pub(crate) use topic::Topic;

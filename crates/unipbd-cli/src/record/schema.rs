@@ -1,6 +1,6 @@
 //! The messages of our own in a log, and the protobuf descriptors that let any reader decode them.
 //!
-//! A field is added in one place: its line in [`messages!`] makes both the Rust struct and the
+//! A field is added in one place: its line in `messages!` makes both the Rust struct and the
 //! descriptor. Numbers (`tag`) are never reused.
 
 use prost::Message;
