@@ -308,6 +308,7 @@ fn material_message(material: &unipbd_core::observe::MaterialDiagnostics) -> Mat
         count: capped(material.count),
         density_error_mean: material.density_error_mean,
         density_error_max: material.density_error_max,
+        density_error_min: material.density_error_min,
     }
 }
 

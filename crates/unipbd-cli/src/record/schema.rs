@@ -147,6 +147,9 @@ messages! {
         /// Largest C, as a fraction.
         #[prost(tag = "4", double)]
         density_error_max: f64,
+        /// Smallest C (dilation), as a fraction.
+        #[prost(tag = "5", double)]
+        density_error_min: f64,
     }
 
     /// Diagnostics of one constraint group.

@@ -116,6 +116,7 @@ pub fn diagnostics(snapshot: &Snapshot, frame: u32) -> Diagnostics {
         count: 7,
         density_error_mean: 0.001,
         density_error_max: 0.02,
+        density_error_min: -0.1,
     };
     Diagnostics {
         time: snapshot.time,
