@@ -1,7 +1,7 @@
 //! From messages back to frames.
 
 use prost::Message;
-use unipbd_core::bodies::{Body, BodyKind};
+use unipbd_core::bodies::{Body, BodyKind, CollisionFilter, Surface};
 use unipbd_core::math::Vector64;
 use unipbd_core::observe::{Event, Severity};
 use unipbd_core::phase::{MaterialIndex, Phase};
@@ -159,5 +159,12 @@ fn body(shape: &BodyShape, state: BodyState) -> Result<Body, String> {
         samples: points(&shape.sample_x, &shape.sample_y),
         fluid_force: Vector64::new(state.fluid_force_x, state.fluid_force_y),
         fluid_torque: state.fluid_torque,
+        // Not in a log, and not needed to draw.
+        sample_area: 0.0,
+        surface: Surface::default(),
+        filter: CollisionFilter::default(),
+        asleep: false,
+        contact_force: Vector64::ZERO,
+        contact_torque: 0.0,
     })
 }

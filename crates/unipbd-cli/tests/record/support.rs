@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use unipbd_cli::record::Header;
 use unipbd_cli::snapshot::{Setting, Snapshot};
 use unipbd_core::Vector64;
-use unipbd_core::bodies::{Body, BodyKind};
+use unipbd_core::bodies::{Body, BodyKind, CollisionFilter, Surface};
 use unipbd_core::observe::{
     Diagnostics, Event, GroupDiagnostics, Material, MaterialDiagnostics, Severity, WallOutline,
 };
@@ -95,6 +95,12 @@ fn bodies(time: f64) -> Vec<Body> {
         samples,
         fluid_force: Vector64::new(0.5, 9.81),
         fluid_torque: -0.125,
+        sample_area: 0.0,
+        surface: Surface::default(),
+        filter: CollisionFilter::default(),
+        asleep: false,
+        contact_force: Vector64::ZERO,
+        contact_torque: 0.0,
     };
     let disc = Body {
         name: "disc".to_owned(),

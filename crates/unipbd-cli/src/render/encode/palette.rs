@@ -147,7 +147,8 @@ mod tests {
         let mut matcher = Matcher::new(histogram.palette(16));
         assert_eq!(matcher.palette().len(), 16);
         for grey in 0..=255u8 {
-            let entry = matcher.palette()[usize::from(matcher.index([grey; 3]))];
+            let index = usize::from(matcher.index([grey; 3]));
+            let entry = matcher.palette()[index];
             assert!(entry[0].abs_diff(grey) <= 13, "{grey} became {}", entry[0]);
         }
     }
