@@ -157,14 +157,18 @@ fn body(shape: &BodyShape, state: BodyState) -> Result<Body, String> {
         outline: points(&shape.outline_x, &shape.outline_y),
         radius: shape.radius,
         samples: points(&shape.sample_x, &shape.sample_y),
+        sample_area: shape.sample_area,
+        surface: Surface {
+            static_friction: shape.static_friction,
+            kinetic_friction: shape.kinetic_friction,
+            rolling_friction: shape.rolling_friction,
+            restitution: shape.restitution,
+        },
+        filter: CollisionFilter { layers: shape.layers, collides_with: shape.collides_with },
+        asleep: state.asleep,
         fluid_force: Vector64::new(state.fluid_force_x, state.fluid_force_y),
         fluid_torque: state.fluid_torque,
-        // Not in a log, and not needed to draw.
-        sample_area: 0.0,
-        surface: Surface::default(),
-        filter: CollisionFilter::default(),
-        asleep: false,
-        contact_force: Vector64::ZERO,
-        contact_torque: 0.0,
+        contact_force: Vector64::new(state.contact_force_x, state.contact_force_y),
+        contact_torque: state.contact_torque,
     })
 }

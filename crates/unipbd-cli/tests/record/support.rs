@@ -95,12 +95,12 @@ fn bodies(time: f64) -> Vec<Body> {
         samples,
         fluid_force: Vector64::new(0.5, 9.81),
         fluid_torque: -0.125,
-        sample_area: 0.0,
-        surface: Surface::default(),
-        filter: CollisionFilter::default(),
-        asleep: false,
-        contact_force: Vector64::ZERO,
-        contact_torque: 0.0,
+        sample_area: 0.01,
+        surface: Surface { rolling_friction: 0.01, restitution: 0.3, ..Surface::default() },
+        filter: CollisionFilter { layers: 2, collides_with: 5 },
+        asleep: time > 0.1,
+        contact_force: Vector64::new(-0.5, 3.0),
+        contact_torque: 0.75,
     };
     let disc = Body {
         name: "disc".to_owned(),
