@@ -4,8 +4,8 @@
 //! substep ahead, so that a body on a hinge keeps its energy as it turns; what drift remains is removed
 //! from the positions alone. A distance with compliance is a spring, solved as in Macklin et al. 2016.
 
+use super::manifold::entry;
 use super::pieces::NONE;
-use super::point::entry;
 use crate::bodies::{Bodies, Pose, Response, Twist};
 use crate::math::Vector64;
 
