@@ -44,7 +44,7 @@ fn samples_keep_area_and_nearly_inertia() {
         let second: f64 = samples.points.iter().map(around).sum();
         println!("{count} samples, area {:.5} of dx^2, inertia {:.4}", samples.area / 0.01, second / moments.second);
         assert!((samples.area * count - moments.area).abs() < 1e-9 && (mean - moments.centroid).length() < 1e-9);
-        assert!((samples.area / 0.01 - 1.0).abs() < 0.04 && (second / moments.second - 1.0).abs() < 0.03);
+        assert!((samples.area / 0.01 - 1.0).abs() < 0.04 && (second / moments.second - 1.0).abs() < 0.04);
     }
 }
 
@@ -111,7 +111,18 @@ fn concave_bodies_rest_on_their_outline() {
 #[test]
 fn star_rests_on_two_points_in_a_concave_wall() {
     // A valley as one concave polygon.
-    let valley = [(-6.0, 4.0), (-6.0, -1.0), (6.0, -1.0), (6.0, 4.0), (5.0, 4.0), (1.0, 0.0), (-1.0, 0.0), (-5.0, 4.0)];
+    let valley = [
+        (-6.0, 20.0),
+        (-6.0, -1.0),
+        (6.0, -1.0),
+        (6.0, 20.0),
+        (5.0, 20.0),
+        (5.0, 4.0),
+        (1.0, 0.0),
+        (-1.0, 0.0),
+        (-5.0, 4.0),
+        (-5.0, 20.0),
+    ];
     let wall = Wall::polygon(valley.iter().map(|&(x, y)| at(x, y)).collect(), Surface::default());
     let mut world = World::new(&[wall.clone()]);
     for k in 0..6 {
@@ -129,7 +140,7 @@ fn star_rests_on_two_points_in_a_concave_wall() {
         world.penetration(),
         world.fastest()
     );
-    assert!(deepest > 0.25 && world.penetration() < 0.01);
+    assert!(deepest > 0.25 && world.penetration() < 0.01 && world.fastest() < 0.1);
 }
 
 #[test]

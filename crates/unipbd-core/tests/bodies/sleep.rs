@@ -95,13 +95,13 @@ fn threads_do_not_change_a_bit() {
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().expect("a pool");
         pool.install(|| {
-            let mut world = World::new(&Wall::tank(at(0.0, 0.0), at(40.0, 60.0), Surface::default()));
+            let mut world = World::new(&Wall::tank(at(0.0, 0.0), at(37.7, 60.0), Surface::default()));
             for k in 0..4500u32 {
-                let place = at(0.4 + 0.52 * f64::from(k % 75), 0.3 + 0.5 * f64::from(k / 75));
+                let place = at(0.3 + 0.501 * f64::from(k % 75), 0.25 + 0.5 * f64::from(k / 75));
                 let shape = if k % 2 == 0 { Shape::Disc { radius: 0.25 } } else { Shape::rectangle(0.5, 0.5) };
                 world.add(body(shape, place, Surface::default()));
             }
-            world.run(0.5);
+            world.run(0.3);
             let contacts = world.contacts.points().count();
             assert!(contacts > 6000, "enough to run in parallel: {contacts}");
             world.ids().map(|id| world.bodies.pose(id)).collect::<Vec<_>>()

@@ -57,9 +57,8 @@ impl World {
         contacts.begin_substep(bodies, dt, *gravity);
         bodies.predict(dt, *time, *gravity);
         contacts.warm_start(bodies);
-        for _ in 0..std::env::var("ITER").map_or(2, |n| n.parse().unwrap()) {
-            contacts.iterate(bodies);
-        }
+        contacts.iterate(bodies);
+        contacts.iterate(bodies);
         bodies.integrate(dt);
         contacts.restitute(bodies);
         contacts.depenetrate(bodies);

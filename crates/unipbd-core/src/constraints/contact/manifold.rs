@@ -4,6 +4,7 @@
 //! pair at once, and splitting masses among pairs and not points, makes a sweep exact for a box on a
 //! floor and halves the split inside a stack.
 
+use super::Depenetration;
 use super::complementarity::{self, Coupling};
 use super::jacobi::Push;
 use super::narrow::Touch;
@@ -244,14 +245,17 @@ impl Contact {
         push
     }
 
-    /// The push that takes a `fraction` of the overlap beyond `slop` out of the positions, `most` at a time [m].
-    pub fn separate(&self, displacements: &[Twist], slop: f64, fraction: f64, most: f64) -> Push {
+    /// The push that takes overlap out of the positions; `size` is that of the smaller body [m].
+    pub fn separate(&self, displacements: &[Twist], how: &Depenetration, size: f64, dt: f64) -> Push {
         let (a, b) = (entry(displacements, self.who.a), entry(displacements, self.who.b));
-        let overlap = self.points.map(|point| -(point.gap + self.opening(&point, &a, &b)) - slop);
+        let overlap = self.points.map(|point| -(point.gap + self.opening(&point, &a, &b)) - how.slop * size);
         if overlap[0] <= 0.0 && overlap[1] <= 0.0 {
             return Push::default();
         }
-        let lacking = overlap.map(|overlap| -(fraction * overlap).clamp(0.0, most));
+        let lacking = overlap.map(|overlap| {
+            let deep = (overlap - how.deep * size).max(0.0);
+            -(how.fraction * overlap + (how.deep_fraction - how.fraction) * deep).clamp(0.0, how.speed * dt)
+        });
         let normal = complementarity::solve(&self.gains.normal, lacking, [0.0; 2], [0.0; 2]);
         let mut push = Push::default();
         for (point, normal) in self.points().iter().zip(normal) {

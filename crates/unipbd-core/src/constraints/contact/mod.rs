@@ -42,12 +42,8 @@ pub struct ContactSettings {
     /// Contacts that share a body count this much less: over-relaxation of the split Jacobi sweep, below 2.
     /// With an odd number of iterations in a substep warm starting is stable only up to 4/3 (one) or 1.69 (three).
     pub relaxation: f64,
-    /// Overlap that is left alone, over the size of the smaller body.
-    pub slop: f64,
-    /// Fraction of the overlap that a substep takes out. Larger ones lift what rocks, and so feed its rocking.
-    pub separation: f64,
-    /// Fastest that overlap is taken out [m/s].
-    pub depenetration_speed: f64,
+    /// How overlap is taken out.
+    pub depenetration: Depenetration,
     /// Velocity iterations of the restitution pass.
     pub restitution_iterations: u32,
     /// When bodies fall asleep; none, never.
@@ -58,12 +54,32 @@ impl Default for ContactSettings {
     fn default() -> Self {
         ContactSettings {
             relaxation: 1.8,
-            slop: 1e-4,
-            separation: 0.1,
-            depenetration_speed: 3.0,
+            depenetration: Depenetration::default(),
             restitution_iterations: 6,
             sleep: Some(SleepSettings::default()),
         }
+    }
+}
+
+/// How overlap is taken out of positions. Gently where it is small: lifting at once what an impact has
+/// pressed in feeds rocking stacks with energy. Swiftly where bodies started inside each other.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Depenetration {
+    /// Overlap that is left alone, over the size of the smaller body.
+    pub slop: f64,
+    /// Fraction of the overlap that a substep takes out.
+    pub fraction: f64,
+    /// Overlap from which on more is taken out, over the size of the smaller body.
+    pub deep: f64,
+    /// Fraction of what lies deeper that a substep takes out.
+    pub deep_fraction: f64,
+    /// Fastest that overlap is taken out [m/s].
+    pub speed: f64,
+}
+
+impl Default for Depenetration {
+    fn default() -> Self {
+        Depenetration { slop: 1e-4, fraction: 0.1, deep: 0.01, deep_fraction: 0.5, speed: 3.0 }
     }
 }
 
@@ -259,13 +275,12 @@ impl Contacts {
 
     /// Takes overlap out of the positions, without changing any velocity.
     pub fn depenetrate(&mut self, bodies: &mut Bodies) {
-        let ContactSettings { slop, separation: fraction, .. } = self.settings;
-        let most = self.settings.depenetration_speed * self.dt;
+        let (how, dt) = (&self.settings.depenetration, self.dt);
         let (displacements, sizes) = (&bodies.displacements, &bodies.sizes);
         self.jacobi.sweep(self.finder.contacts_mut(), bodies.len(), |contact| {
             let size = sizes[contact.who.a as usize];
             let size = if contact.who.b == NONE { size } else { size.min(sizes[contact.who.b as usize]) };
-            contact.separate(displacements, slop * size, fraction, most)
+            contact.separate(displacements, how, size, dt)
         });
         for linked in self.joints.iter_mut().filter(|linked| is_movable(linked, bodies)) {
             let pushes = linked.separate(bodies);
