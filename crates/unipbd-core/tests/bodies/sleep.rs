@@ -12,7 +12,8 @@ fn heap(settings: ContactSettings) -> World {
             1 => Shape::rectangle(0.7, 0.5),
             _ => Shape::regular(5, 0.35),
         };
-        world.add(body(shape, place, Surface::default()));
+        let surface = Surface { rolling_friction: 0.02, ..Surface::default() };
+        world.add(body(shape, place, surface));
     }
     world
 }

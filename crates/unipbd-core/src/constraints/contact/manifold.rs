@@ -57,8 +57,8 @@ struct Gains {
     /// Tangential response of each point to itself [1/kg], and to normal impulses at both.
     tangent: [f64; 2],
     cross: [[f64; 2]; 2],
-    /// Response to a rolling moment [1/(kg m^2)].
-    rolling: f64,
+    /// Responses of both bodies to moments [1/(kg m^2)].
+    turning: (f64, f64),
     /// Coulomb coefficient: the static one for what hardly slides, else the kinetic one.
     friction: f64,
 }
@@ -161,20 +161,17 @@ impl Contact {
         self.gains.tangent = [p, q].map(|p| linear + turning(p.tangent_a, p.tangent_a, p.tangent_b, p.tangent_b));
         let cross = |p: &Point, q: &Point| turning(p.tangent_a, q.normal_a, p.tangent_b, q.normal_b);
         self.gains.cross = [[cross(&p, &p), cross(&p, &q)], [cross(&q, &p), cross(&q, &q)]];
-        self.gains.rolling = a.angular + b.angular;
+        self.gains.turning = (a.angular, b.angular);
     }
 
     /// The push of the impulses kept from the last substep.
     pub fn kept_push(&self) -> Push {
-        let mut push = self.rolling_push(self.rolling_impulse);
+        let moment = self.rolling_impulse;
+        let mut push = Push { linear: Vector64::ZERO, angular_a: moment, angular_b: moment };
         for point in self.points() {
             self.add_push(&mut push, point, point.normal_impulse, point.tangent_impulse);
         }
         push
-    }
-
-    fn rolling_push(&self, moment: f64) -> Push {
-        Push { linear: Vector64::ZERO, angular_a: moment, angular_b: moment }
     }
 
     fn add_push(&self, push: &mut Push, point: &Point, normal: f64, tangent: f64) {
@@ -199,11 +196,7 @@ impl Contact {
         let old = points.map(|point| point.normal_impulse);
         let normal = complementarity::solve(&gains.normal, excess, old, [0.0; 2]);
         let total = normal[0] + normal[1];
-        let roll = self.who.rolling_arm * total;
-        let turn = if roll > 0.0 { (a.angular - b.angular) / gains.rolling } else { 0.0 };
-        let rolling = (self.rolling_impulse - turn).clamp(-roll, roll);
-        let mut push = self.rolling_push(rolling - self.rolling_impulse);
-        self.rolling_impulse = rolling;
+        let mut push = Push::default();
         for k in 0..self.count as usize {
             let cross = gains.cross[k][0] * (normal[0] - old[0]) + gains.cross[k][1] * (normal[1] - old[1]);
             // Points of one line slide alike: each answers for its share of the load.
@@ -214,7 +207,21 @@ impl Contact {
             self.add_push(&mut push, &points[k], normal[k] - old[k], tangent - points[k].tangent_impulse);
             (self.points[k].normal_impulse, self.points[k].tangent_impulse) = (normal[k], tangent);
         }
+        if self.who.rolling_arm > 0.0 {
+            self.resist_rolling(a.angular - b.angular, total, &mut push);
+        }
         push
+    }
+
+    /// Rolling resistance, after the other impulses of the contact have turned the bodies.
+    fn resist_rolling(&mut self, turn: f64, normal: f64, push: &mut Push) {
+        let limit = self.who.rolling_arm * normal;
+        let (a, b) = self.gains.turning;
+        let turn = turn + push.angular_a * a + push.angular_b * b;
+        let moment = (self.rolling_impulse - turn / (a + b)).clamp(-limit, limit);
+        push.angular_a += moment - self.rolling_impulse;
+        push.angular_b += moment - self.rolling_impulse;
+        self.rolling_impulse = moment;
     }
 
     fn point_rebounds(&self, point: &Point, slowest: f64) -> bool {

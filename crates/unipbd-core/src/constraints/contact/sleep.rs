@@ -17,7 +17,7 @@ pub struct SleepSettings {
 
 impl Default for SleepSettings {
     fn default() -> Self {
-        SleepSettings { speed: 0.02, delay: 0.5 }
+        SleepSettings { speed: 0.05, delay: 0.5 }
     }
 }
 
