@@ -49,7 +49,9 @@ fn twenty_boxes_stand() {
         world.run(19.0);
         let speed = world.fastest_in(1.0);
         let (drift, overlap) = (drift(&world, &start), world.penetration());
-        println!("stack of 20, offset {offset}: speed {speed:.1e} m/s, drift {drift:.1e} m, overlap {overlap:.1e} m");
+        println!(
+            "stack of 20, offset {offset}: speed {speed:.1e} m/s, drift {drift:.1e} m, overlap {overlap:.1e} m"
+        );
         assert!(drift <= 0.02 && overlap <= 1e-3 && speed < 0.02);
     }
 }
@@ -116,4 +118,37 @@ fn settled_discs_hardly_overlap() {
         world.fastest()
     );
     assert!(world.penetration() < 5e-3 && world.ids().all(|id| world.position(id).y > 0.24));
+}
+
+/// 5000 bodies falling into a tank; times are printed, for a look and not for a bar.
+fn settle_5000(shape: impl Fn(u32) -> Shape) {
+    let mut world = World::new(&Wall::tank(at(0.0, 0.0), at(50.0, 200.0), Surface::default()));
+    world.substeps = std::env::var("NSUB").map_or(4, |n| n.parse().unwrap());
+    for k in 0..5000u32 {
+        let jitter = 0.05 * (f64::from(k) * 12.9898).sin();
+        let place = at(0.4 + 0.6 * f64::from(k % 82) + jitter, 0.3 + 0.6 * f64::from(k / 82));
+        world.add(body(shape(k), place, Surface::default()));
+    }
+    for part in 0..4 {
+        let started = std::time::Instant::now();
+        world.run(2.0);
+        let per_frame = started.elapsed().as_secs_f64() * 1e3 / 120.0;
+        let (points, overlap, fastest) = (world.contacts.points().count(), world.penetration(), world.fastest());
+        let mean = world.contacts.points().map(|p| (-p.gap).max(0.0)).sum::<f64>() / points as f64;
+        println!("from {} s: {per_frame:.2} ms per frame, {points} points, speed {fastest:.1e} m/s", 2 * part);
+        println!("overlap {overlap:.1e} m, mean {mean:.1e} m");
+    }
+    assert!(world.penetration() < 0.05);
+}
+
+#[test]
+#[ignore = "a minute of work"]
+fn five_thousand_discs_settle() {
+    settle_5000(|_| Shape::Disc { radius: 0.25 });
+}
+
+#[test]
+#[ignore = "a minute of work"]
+fn five_thousand_boxes_settle() {
+    settle_5000(|_| Shape::rectangle(0.5, 0.5));
 }
