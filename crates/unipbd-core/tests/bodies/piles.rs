@@ -49,9 +49,7 @@ fn twenty_boxes_stand() {
         world.run(19.0);
         let speed = world.fastest_in(1.0);
         let (drift, overlap) = (drift(&world, &start), world.penetration());
-        println!(
-            "stack of 20, offset {offset}: speed {speed:.1e} m/s, drift {drift:.1e} m, overlap {overlap:.1e} m"
-        );
+        println!("stack of 20, offset {offset}: speed {speed:.1e} m/s, drift {drift:.1e} m, overlap {overlap:.1e} m");
         assert!(drift <= 0.02 && overlap <= 1e-3 && speed < 0.02);
     }
 }
@@ -123,7 +121,7 @@ fn settled_discs_hardly_overlap() {
 /// 5000 bodies falling into a tank; times are printed, for a look and not for a bar.
 fn settle_5000(shape: impl Fn(u32) -> Shape) {
     let mut world = World::new(&Wall::tank(at(0.0, 0.0), at(50.0, 200.0), Surface::default()));
-    world.substeps = std::env::var("NSUB").map_or(4, |n| n.parse().unwrap());
+    world.substeps = 8;
     for k in 0..5000u32 {
         let jitter = 0.05 * (f64::from(k) * 12.9898).sin();
         let place = at(0.4 + 0.6 * f64::from(k % 82) + jitter, 0.3 + 0.6 * f64::from(k / 82));
