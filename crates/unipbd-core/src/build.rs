@@ -1,5 +1,7 @@
 //! From a scene to a running solver: the only place that names concrete groups and effects.
 
+mod bodies;
+
 use crate::constraints::{ConstraintGroup, Density, DensitySettings};
 use crate::effects::{Conduction, Drag, Effect, SmokeAdvection, Viscosity, VorticityConfinement};
 use crate::math::{Vector, Vector64, real, vector};
@@ -8,6 +10,7 @@ use crate::observe::Material;
 use crate::parallel::Parallelism;
 use crate::particles::{NewParticle, OptionalColumns, Particles};
 use crate::phase::{MaterialIndex, Phase};
+use crate::rigid::RigidBodies;
 use crate::rng::Rng;
 use crate::scene::{GradientPoint, MaterialRef, Problems, Scene, block_points, disc_points};
 use crate::sources::{EmitterSystem, RemovalRules};
@@ -66,8 +69,11 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         temperature: !scene.gas.is_empty(),
         age: removal.as_ref().is_some_and(RemovalRules::needs_age),
     };
+    let mut particles = particles(scene, seed, optional);
+    let rigid = rigid_bodies(scene, &mut particles);
     Parts {
-        particles: particles(scene, seed, optional),
+        rigid,
+        particles,
         materials: shown_materials(scene),
         forces: scene.materials().map(|material| body_force(material, scene)).collect(),
         walls: Walls::new(scene),
@@ -126,8 +132,35 @@ fn body_force(material: MaterialRef<'_>, scene: &Scene) -> BodyForce {
             BodyForce { acceleration: vector(gravity * liquid.gravity_factor), thermal: false }
         }
         MaterialRef::Gas(gas) => BodyForce { acceleration: vector(gravity * gas.gravity_factor), thermal: true },
-        MaterialRef::Smoke(_) => BodyForce { acceleration: Vector::ZERO, thermal: false },
+        MaterialRef::Smoke(_) | MaterialRef::Rigid => BodyForce { acceleration: Vector::ZERO, thermal: false },
     }
+}
+
+/// The bodies of a scene; their samples are added to the particles where there is a fluid to see them.
+fn rigid_bodies(scene: &Scene, particles: &mut Particles) -> Option<RigidBodies> {
+    if scene.body.is_empty() {
+        return None;
+    }
+    let (bodies, contacts) = bodies::build(scene);
+    let fluid = scene.materials().any(|material| material.phase().is_fluid());
+    let first_sample = fluid.then(|| particles.ids_given());
+    if fluid {
+        let material = scene.materials().count() as MaterialIndex - 1;
+        for body in 0..bodies.len() as u32 {
+            for &sample in bodies.samples(body) {
+                let place = bodies.pose(body).apply(sample);
+                particles.push(NewParticle {
+                    position: vector(place),
+                    velocity: vector(bodies.velocity_at(body, place)),
+                    inverse_mass: 0.0,
+                    material,
+                    phase: Phase::Rigid,
+                    temperature: 0.0,
+                });
+            }
+        }
+    }
+    Some(RigidBodies::new(bodies, contacts, first_sample, scene.spacing))
 }
 
 /// What the start of a scene is filled with.

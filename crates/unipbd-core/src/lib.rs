@@ -24,6 +24,7 @@ pub mod observe;
 pub mod parallel;
 pub mod particles;
 pub mod phase;
+mod rigid;
 mod rng;
 pub mod rows;
 pub mod scene;

@@ -11,7 +11,9 @@ pub use specification::{BodySpec, CollisionFilter, MassSpec, Rotation, Surface};
 use crate::math::Vector64;
 
 /// How a body moves.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
 pub enum BodyKind {
     /// Moved by forces and contacts.
     Dynamic,

@@ -1,20 +1,31 @@
 use crate::math::Vector;
 
-/// Displacements that a group wants, by row [m]. Added up, then applied by the loop at once.
+/// What a group wants to move. Added up, then applied by the loop at once.
 #[derive(Clone, Debug, Default)]
 pub struct Corrections {
     displacement: Vec<Vector>,
+    load: Vec<Vector>,
 }
 
 impl Corrections {
-    /// Displacements by row.
+    /// Displacements by row [m].
     pub fn displacements(&self) -> &[Vector] {
         &self.displacement
     }
 
-    /// Displacements by row, to be written.
+    /// Displacements by row, to be written [m].
     pub fn displacements_mut(&mut self) -> &mut [Vector] {
         &mut self.displacement
+    }
+
+    /// Forces on samples of rigid bodies times dt^2, by dense row [kg m]; empty in a scene without bodies.
+    pub fn loads(&self) -> &[Vector] {
+        &self.load
+    }
+
+    /// Forces on samples of rigid bodies times dt^2, by dense row, to be written [kg m].
+    pub fn loads_mut(&mut self) -> &mut [Vector] {
+        &mut self.load
     }
 
     /// Adds a displacement to one row.
@@ -22,9 +33,11 @@ impl Corrections {
         self.displacement[row] += displacement;
     }
 
-    /// Back to zero for this many rows.
-    pub(crate) fn reset(&mut self, rows: usize) {
+    /// Back to zero for this many rows, and this many that may be samples of bodies.
+    pub(crate) fn reset(&mut self, rows: usize, samples: usize) {
         self.displacement.clear();
         self.displacement.resize(rows, Vector::ZERO);
+        self.load.clear();
+        self.load.resize(samples, Vector::ZERO);
     }
 }

@@ -21,7 +21,7 @@ impl Viscosity {
         let of = |material: MaterialRef<'_>| match material {
             MaterialRef::Liquid(liquid) => real(liquid.viscosity),
             MaterialRef::Gas(gas) => real(gas.viscosity),
-            MaterialRef::Smoke(_) => 0.0,
+            MaterialRef::Smoke(_) | MaterialRef::Rigid => 0.0,
         };
         let strength: Vec<Real> = scene.materials().map(of).collect();
         any(&strength).then(|| Viscosity {
@@ -36,7 +36,7 @@ impl Viscosity {
 fn uniform(scene: &Scene, strength: &[Real]) -> Option<Real> {
     let mut dense = scene.materials().zip(strength).filter(|(material, _)| material.phase().is_dense());
     let (_, &first) = dense.next()?;
-    (dense.next().is_none() && scene.emitter.is_empty()).then_some(first)
+    (dense.next().is_none() && scene.emitter.is_empty() && scene.body.is_empty()).then_some(first)
 }
 
 impl Effect for Viscosity {

@@ -1,6 +1,9 @@
 use serde::{Deserialize, Serialize};
 
-use super::{Block, Disc, Emitter, Gas, HalfPlane, Liquid, Obstacle, Smoke, SolverSettings, Tank};
+use super::{
+    Block, BodyDescription, Disc, Emitter, Gas, HalfPlane, JointDescription, Liquid, Obstacle, Smoke, SolverSettings,
+    Tank,
+};
 
 /// A whole scene. All quantities are in SI units; angles carry the suffix `_deg`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -53,6 +56,12 @@ pub struct Scene {
     /// Static containers: particles stay inside.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub tank: Vec<Tank>,
+    /// Rigid bodies, one table each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub body: Vec<BodyDescription>,
+    /// Joints between bodies, or a body and the world.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub joint: Vec<JointDescription>,
     /// Static boxes: particles stay outside.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub obstacle: Vec<Obstacle>,
@@ -80,6 +89,8 @@ impl Default for Scene {
             emitter: Vec::new(),
             half_plane: Vec::new(),
             tank: Vec::new(),
+            body: Vec::new(),
+            joint: Vec::new(),
             obstacle: Vec::new(),
         }
     }

@@ -100,7 +100,12 @@ pub enum MaterialRef<'a> {
     Gas(&'a Gas),
     /// A smoke.
     Smoke(&'a Smoke),
+    /// The samples of all rigid bodies.
+    Rigid,
 }
+
+/// Name of the material of all samples of rigid bodies.
+const RIGID: &str = "bodies";
 
 impl<'a> MaterialRef<'a> {
     /// The name given in the scene.
@@ -109,6 +114,7 @@ impl<'a> MaterialRef<'a> {
             MaterialRef::Liquid(liquid) => &liquid.name,
             MaterialRef::Gas(gas) => &gas.name,
             MaterialRef::Smoke(smoke) => &smoke.name,
+            MaterialRef::Rigid => RIGID,
         }
     }
 
@@ -118,15 +124,16 @@ impl<'a> MaterialRef<'a> {
             MaterialRef::Liquid(_) => Phase::Liquid,
             MaterialRef::Gas(_) => Phase::Gas,
             MaterialRef::Smoke(_) => Phase::Smoke,
+            MaterialRef::Rigid => Phase::Rigid,
         }
     }
 
-    /// Rest density [kg/m^2]; 0 for smoke, which has no mass.
+    /// Rest density [kg/m^2]; 0 for smoke, which has no mass, and bodies, which have each their own.
     pub fn density(&self) -> f64 {
         match self {
             MaterialRef::Liquid(liquid) => liquid.density,
             MaterialRef::Gas(gas) => gas.density,
-            MaterialRef::Smoke(_) => 0.0,
+            MaterialRef::Smoke(_) | MaterialRef::Rigid => 0.0,
         }
     }
 
@@ -136,17 +143,19 @@ impl<'a> MaterialRef<'a> {
             MaterialRef::Liquid(liquid) => liquid.color.as_deref(),
             MaterialRef::Gas(gas) => gas.color.as_deref(),
             MaterialRef::Smoke(smoke) => smoke.color.as_deref(),
+            MaterialRef::Rigid => None,
         }
     }
 }
 
 impl super::Scene {
-    /// All materials in index order: liquids, gases, smokes, each in file order.
+    /// All materials in index order: liquids, gases, smokes, each in file order, then the bodies.
     pub fn materials(&self) -> impl Iterator<Item = MaterialRef<'_>> {
         let liquids = self.liquid.iter().map(MaterialRef::Liquid);
         let gases = self.gas.iter().map(MaterialRef::Gas);
         let smokes = self.smoke.iter().map(MaterialRef::Smoke);
-        liquids.chain(gases).chain(smokes)
+        let bodies = (!self.body.is_empty()).then_some(MaterialRef::Rigid);
+        liquids.chain(gases).chain(smokes).chain(bodies)
     }
 
     /// Index and description of the material with this name.

@@ -3,6 +3,7 @@
 //! A [`Scene`] holds no runtime state. [`Scene::validate`] lists everything that is wrong with it,
 //! [`Scene::estimate`] says what it would cost, [`Scene::build`] makes a [`Solver`](crate::Solver).
 
+mod bodies;
 mod description;
 mod estimate;
 mod layout;
@@ -14,6 +15,9 @@ mod sources;
 mod validate;
 mod walls;
 
+pub use bodies::{
+    BodyDescription, Copies, Heap, JointDescription, JointRule, MotionDescription, RotationRule, Station,
+};
 pub use description::{Domain, Environment, Scene, View};
 pub use estimate::{BYTES_PER_PARTICLE, Estimate, SECONDS_PER_PARTICLE_AND_SUBSTEP};
 pub use materials::{Gas, Liquid, MaterialRef, Smoke};

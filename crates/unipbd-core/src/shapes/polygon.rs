@@ -54,7 +54,7 @@ pub(super) fn contains(corners: &[Vector64], point: Vector64) -> bool {
 }
 
 /// Signed distance and its gradient; on the boundary itself the normal of the edge.
-pub(super) fn nearest(corners: &[Vector64], point: Vector64) -> Nearest {
+pub(crate) fn nearest(corners: &[Vector64], point: Vector64) -> Nearest {
     let outwards = if doubled_area(corners) > 0.0 { -1.0 } else { 1.0 };
     let (mut best, mut offset, mut edge) = (f64::INFINITY, Vector64::ZERO, Vector64::X);
     for (p, q) in edges(corners) {

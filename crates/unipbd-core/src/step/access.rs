@@ -93,7 +93,7 @@ impl Solver {
 
     /// Rigid bodies.
     pub fn bodies(&self) -> &[Body] {
-        &[]
+        self.world.parts.rigid.as_ref().map_or(&[], |rigid| rigid.views())
     }
 
     /// Walls as lines to draw.

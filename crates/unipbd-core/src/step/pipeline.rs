@@ -7,14 +7,20 @@ pub enum Stage {
     Emit,
     /// Velocities take up the body forces, positions are predicted.
     Predict,
+    /// Bodies are predicted; their contacts and joints are found and solved once; samples follow.
+    Contacts,
     /// The neighbour list is made valid for the predicted positions.
     FindNeighbors,
     /// Constraint groups prepare for the substep.
     BeginGroups,
     /// Constraint groups move particles, one after the other, each from one state.
     Project,
+    /// Contacts and joints are solved again, now that the fluid has pushed the bodies.
+    ContactsAgain,
     /// Velocities follow from the displacements.
     UpdateVelocities,
+    /// Bodies take up pose and velocity, rebound, and are moved out of each other.
+    MoveBodies,
     /// Groups that asked for it change the velocities.
     FinishGroups,
     /// Viscosity, drag, vorticity, heat.
@@ -29,10 +35,13 @@ impl Stage {
         match self {
             Stage::Emit => "emit",
             Stage::Predict => "predict",
+            Stage::Contacts => "contacts",
             Stage::FindNeighbors => "find_neighbors",
             Stage::BeginGroups => "begin_groups",
             Stage::Project => "project",
+            Stage::ContactsAgain => "contacts_again",
             Stage::UpdateVelocities => "update_velocities",
+            Stage::MoveBodies => "move_bodies",
             Stage::FinishGroups => "finish_groups",
             Stage::Effects => "effects",
             Stage::AdvectSmoke => "advect_smoke",
@@ -44,6 +53,7 @@ impl Stage {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Features {
     pub emitters: bool,
+    pub bodies: bool,
     pub neighbors: bool,
     pub groups: bool,
     /// Groups, or walls that anything can run into.
@@ -59,10 +69,13 @@ pub(super) fn pipeline(features: Features) -> Vec<Stage> {
     let stages = [
         (Stage::Emit, features.emitters),
         (Stage::Predict, true),
+        (Stage::Contacts, features.bodies),
         (Stage::FindNeighbors, features.neighbors),
         (Stage::BeginGroups, features.groups),
         (Stage::Project, features.projection),
+        (Stage::ContactsAgain, features.bodies),
         (Stage::UpdateVelocities, true),
+        (Stage::MoveBodies, features.bodies),
         (Stage::FinishGroups, features.velocity_passes),
         (Stage::Effects, features.effects),
         (Stage::AdvectSmoke, features.smoke),

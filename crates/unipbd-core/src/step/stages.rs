@@ -3,7 +3,7 @@
 use super::integrate;
 use super::world::World;
 use super::{SolverError, Stage};
-use crate::math::Real;
+use crate::math::{Real, wide};
 use crate::neighbors::Prepared;
 
 /// Speed in spacings per frame beyond which a run has diverged.
@@ -26,10 +26,13 @@ impl World {
         match stage {
             Stage::Emit => self.emit(),
             Stage::Predict => self.predict(),
+            Stage::Contacts => self.predict_bodies(),
             Stage::FindNeighbors => self.find_neighbors(),
             Stage::BeginGroups => self.begin_groups(),
             Stage::Project => self.project(),
+            Stage::ContactsAgain => self.iterate_contacts(),
             Stage::UpdateVelocities => return self.update_velocities(),
+            Stage::MoveBodies => self.move_bodies(),
             Stage::FinishGroups => self.finish_groups(),
             Stage::Effects => self.apply_effects(),
             Stage::AdvectSmoke => self.advect_smoke(),
@@ -54,6 +57,26 @@ impl World {
         self.extra.clear();
     }
 
+    fn predict_bodies(&mut self) {
+        let parts = &mut self.parts;
+        let Some(rigid) = &mut parts.rigid else { return };
+        rigid.predict(self.clock.dt, self.clock.time, wide(parts.gravity));
+        rigid.iterate_contacts();
+        rigid.place_samples(&mut parts.particles, &self.rows);
+    }
+
+    fn iterate_contacts(&mut self) {
+        let Some(rigid) = &mut self.parts.rigid else { return };
+        rigid.iterate_contacts();
+    }
+
+    fn move_bodies(&mut self) {
+        let parts = &mut self.parts;
+        let Some(rigid) = &mut parts.rigid else { return };
+        rigid.integrate(self.clock.dt);
+        rigid.settle_samples(&mut parts.particles, &self.rows);
+    }
+
     pub(super) fn find_neighbors(&mut self) {
         let parts = &mut self.parts;
         let prepared = parts.neighbors.prepare(&mut parts.particles, parts.cover, parts.parallelism);
@@ -71,13 +94,13 @@ impl World {
 
     fn project(&mut self) {
         if self.parts.groups.is_empty() {
-            self.corrections.reset(self.parts.particles.len());
+            self.reset_corrections();
             self.take_up_corrections();
         }
         let mut groups = std::mem::take(&mut self.parts.groups);
         for _ in 0..self.parts.iterations {
             for group in &mut groups {
-                self.corrections.reset(self.parts.particles.len());
+                self.reset_corrections();
                 group.project(World::now(&self.parts, &self.rows, &self.clock), &mut self.corrections);
                 self.take_up_corrections();
             }
@@ -90,9 +113,21 @@ impl World {
         self.parts.groups = groups;
     }
 
+    fn reset_corrections(&mut self) {
+        let particles = &self.parts.particles;
+        let samples = if self.parts.rigid.is_some() { particles.dense() } else { 0 };
+        self.corrections.reset(particles.len(), samples);
+    }
+
     fn take_up_corrections(&mut self) {
         let parts = &mut self.parts;
         integrate::apply(&mut parts.particles, &self.corrections, &parts.walls, parts.parallelism);
+        if let Some(rigid) = &mut parts.rigid {
+            rigid.take_loads(self.corrections.loads(), &parts.particles, &self.rows, self.clock.dt);
+            if self.stages.contains(&Stage::FindNeighbors) {
+                rigid.expel(&mut parts.particles, &parts.neighbors, &self.rows, self.clock.dt);
+            }
+        }
     }
 
     fn update_velocities(&mut self) -> Result<(), SolverError> {

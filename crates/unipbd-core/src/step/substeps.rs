@@ -9,6 +9,9 @@ const ERROR_CONSTANT: f64 = 0.335;
 /// Relaxation of liquids, omega.
 const RELAXATION: f64 = 0.5;
 
+/// Height of a stack of bodies that one substep per frame can carry.
+const BODIES_PER_SUBSTEP: f64 = 2.5;
+
 /// What the choice follows from: a function of the state at the start of a frame alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Demand {
@@ -16,6 +19,8 @@ pub struct Demand {
     pub speed: f64,
     /// Largest pressure over density, from the multipliers or the depth of the liquid [m^2/s^2].
     pub pressure: f64,
+    /// Bodies that may have to carry each other.
+    pub chain: f64,
 }
 
 /// Chooses the number of substeps per frame.
@@ -58,13 +63,14 @@ impl SubstepRule {
         }
     }
 
-    /// The largest of three demands: speed (CFL), trust region (the compression within one substep
+    /// The largest of four demands: the height of stacks, speed (CFL), trust region (the compression within one substep
     /// stays below 0.2), and the target compression.
     fn wanted(&self, frame: f64, demand: Demand) -> f64 {
         let courant = frame * demand.speed / (COURANT * self.spacing);
         let trust = 2.0 * frame * demand.pressure.sqrt() / self.spacing;
         let accuracy = frame / self.spacing * (ERROR_CONSTANT / RELAXATION * demand.pressure / self.target).sqrt();
-        courant.max(trust).max(accuracy).ceil()
+        let support = demand.chain / BODIES_PER_SUBSTEP;
+        courant.max(trust).max(accuracy).max(support).ceil()
     }
 }
 
@@ -78,20 +84,21 @@ mod tests {
 
     #[test]
     fn substeps_grow_with_the_square_root_of_the_depth() {
-        let at = |depth: f64| rule().choose(1.0 / 60.0, Demand { speed: 0.0, pressure: 9.81 * depth }).substeps;
+        let at =
+            |depth: f64| rule().choose(1.0 / 60.0, Demand { pressure: 9.81 * depth, ..Demand::default() }).substeps;
         assert_eq!(at(3.0), 8);
         assert!((f64::from(at(120.0)) / f64::from(at(30.0)) - 2.0).abs() < 0.1);
     }
 
     #[test]
     fn speed_is_bound_to_two_fifths_of_a_spacing() {
-        let choice = rule().choose(1.0 / 60.0, Demand { speed: 12.0, pressure: 0.0 });
+        let choice = rule().choose(1.0 / 60.0, Demand { speed: 12.0, ..Demand::default() });
         assert_eq!(choice.substeps, 5);
     }
 
     #[test]
     fn the_cap_binds_and_says_what_was_wanted() {
-        let choice = rule().choose(1.0, Demand { speed: 1e4, pressure: 0.0 });
+        let choice = rule().choose(1.0, Demand { speed: 1e4, ..Demand::default() });
         assert_eq!(choice, Choice { substeps: 256, wanted: 250_000 });
     }
 }

@@ -9,12 +9,13 @@ use super::timings::Timings;
 use super::{FrameReport, SolverError, Stage};
 use crate::constraints::{ConstraintGroup, Corrections, Needs, Substep};
 use crate::effects::{Changes, Effect, SmokeAdvection};
-use crate::math::{Real, Vector};
+use crate::math::{Real, Vector, wide};
 use crate::neighbors::{Cover, Neighbors};
 use crate::observe::{Event, Material, Severity};
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
 use crate::phase::Phase;
+use crate::rigid::RigidBodies;
 use crate::rows::RowIndex;
 use crate::sources::{EmitterSystem, RemovalRules};
 use crate::walls::Walls;
@@ -30,6 +31,7 @@ pub(crate) struct Parts {
     pub groups: Vec<Box<dyn ConstraintGroup>>,
     pub effects: Vec<Box<dyn Effect>>,
     pub smoke: Option<SmokeAdvection>,
+    pub rigid: Option<RigidBodies>,
     pub emitters: Option<EmitterSystem>,
     pub removal: Option<RemovalRules>,
     pub substeps: SubstepRule,
@@ -104,6 +106,7 @@ impl World {
         let of_effects = parts.effects.iter().map(|effect| effect.needs()).fold(Needs::NOTHING, |a, b| a | b);
         self.stages = pipeline(Features {
             emitters: parts.emitters.is_some(),
+            bodies: parts.rigid.is_some(),
             neighbors: parts.smoke.is_some() || (needs | of_effects).contains(Needs::NEIGHBORS),
             groups: !parts.groups.is_empty(),
             projection: !parts.groups.is_empty() || !parts.walls.is_empty(),
@@ -111,7 +114,7 @@ impl World {
             effects: !parts.effects.is_empty(),
             smoke: parts.smoke.is_some(),
         });
-        self.needs_rows = parts.emitters.is_some() || needs.contains(Needs::ROWS);
+        self.needs_rows = parts.emitters.is_some() || parts.rigid.is_some() || needs.contains(Needs::ROWS);
         self.index_rows();
     }
 
@@ -144,6 +147,9 @@ impl World {
             hook(self);
             self.substep()?;
             self.clock.step += 1;
+        }
+        if let Some(rigid) = &mut self.parts.rigid {
+            rigid.finish_frame(self.parts.frame_time);
         }
         self.clock.frame += 1;
         self.clock.time = self.clock.frame as f64 * self.parts.frame_time;
@@ -210,7 +216,8 @@ impl World {
         let parts = &self.parts;
         let emitted = parts.emitters.as_ref().map_or(0.0, |emitters| emitters.speed_max(self.clock.time));
         let moving = if self.clock.step == 0 { self.fastest() } else { self.clock.speed };
-        Demand { speed: moving.max(emitted), pressure: self.depth_pressure().max(self.multiplier_pressure()) }
+        let chain = parts.rigid.as_ref().map_or(0.0, |rigid| rigid.support_chain(wide(parts.gravity)));
+        Demand { speed: moving.max(emitted), chain, pressure: self.depth_pressure().max(self.multiplier_pressure()) }
     }
 
     fn fastest(&self) -> f64 {

@@ -100,6 +100,7 @@ impl ConstraintGroup for Density {
         self.sum_kernels(now);
         self.step_multipliers(now);
         self.correct(now, out);
+        self.load_bodies(now, out);
         self.repel(now, out);
     }
 

@@ -116,6 +116,6 @@ impl DensityMaterial {
 fn uniform_mass(scene: &Scene) -> Option<f64> {
     let mut densities = scene.materials().filter(|material| material.phase().is_dense()).map(|m| m.density());
     let first = densities.next()?;
-    let uniform = scene.emitter.is_empty() && densities.all(|density| density == first);
+    let uniform = scene.emitter.is_empty() && scene.body.is_empty() && densities.all(|density| density == first);
     uniform.then_some(first * scene.spacing * scene.spacing)
 }

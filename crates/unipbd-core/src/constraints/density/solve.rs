@@ -3,6 +3,7 @@
 use super::{Density, DensityMaterial};
 use crate::constraints::{Corrections, Substep};
 use crate::math::Real;
+use crate::phase::Phase;
 use crate::scene::GradientPoint;
 use crate::simd::{self, DensityInput, DensityOutput, Weights};
 
@@ -72,6 +73,16 @@ impl Density {
         let rows = now.particles.dense();
         now.parallelism.update(&mut out.displacements_mut()[..rows], |i, displacement| {
             *displacement -= inverse_masses[i] * (sums[i] * volume + walls[i] * steps[i]);
+        });
+    }
+
+    /// The forces of the same multipliers on the samples of bodies. Run after [`correct`](Self::correct).
+    pub(super) fn load_bodies(&self, now: Substep<'_>, out: &mut Corrections) {
+        let (sums, volume, phases) = (&self.sums.gradient, self.settings.volume, now.particles.phases());
+        now.parallelism.update(out.loads_mut(), |i, load| {
+            if phases[i] == Phase::Rigid {
+                *load -= sums[i] * volume;
+            }
         });
     }
 

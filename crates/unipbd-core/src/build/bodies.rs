@@ -1,0 +1,161 @@
+//! Bodies, joints and walls of a scene as the contact solver takes them.
+
+use crate::bodies::{
+    Bodies, BodySpec, CollisionFilter, MassSpec, Motion, Pose, Repeat, Rotation, Surface, Twist, Waypoint,
+};
+use crate::constraints::contact::{ContactSettings, Contacts, DistanceRule, Joint, JointKind, Motor};
+use crate::math::Vector64;
+use crate::scene::{BodyDescription, Heap, JointDescription, JointRule, MotionDescription, RotationRule, Scene, Side};
+use crate::shapes::{Shape, Wall};
+
+/// All bodies of a scene, and the contacts and joints between them and its walls.
+pub(super) fn build(scene: &Scene) -> (Bodies, Contacts) {
+    let mut bodies = Bodies::new(scene.spacing);
+    for (number, description) in scene.body.iter().enumerate() {
+        for spec in specifications(description, number) {
+            // Faulty outlines were refused by `Scene::validate`.
+            let _ = bodies.add(spec);
+        }
+    }
+    let mut contacts = Contacts::new(&walls(scene), ContactSettings::default());
+    for description in &scene.joint {
+        if let Some(joint) = joint(description, &bodies) {
+            contacts.add_joint(joint);
+        }
+    }
+    (bodies, contacts)
+}
+
+/// A body and its copies.
+fn specifications(description: &BodyDescription, number: usize) -> Vec<BodySpec> {
+    let name = if description.name.is_empty() { format!("body {number}") } else { description.name.clone() };
+    let one = specification(description, name);
+    let Some(copies) = &description.copies else { return vec![one] };
+    let mut all = Vec::new();
+    for row in 0..copies.rows {
+        let (columns, shift) = match copies.heap {
+            Heap::Grid => (copies.columns, 0.0),
+            Heap::Brick => (copies.columns, 0.5 * f64::from(row % 2)),
+            Heap::Pyramid => (copies.columns.saturating_sub(row), 0.5 * f64::from(row)),
+        };
+        for column in 0..columns {
+            let offset = Vector64::new((f64::from(column) + shift) * copies.step[0], f64::from(row) * copies.step[1]);
+            let mut copy = one.clone();
+            copy.name = format!("{} {}", one.name, all.len());
+            copy.pose.position += offset;
+            all.push(copy);
+        }
+    }
+    all
+}
+
+fn specification(description: &BodyDescription, name: String) -> BodySpec {
+    let layers = |list: &[u8]| list.iter().fold(0, |mask, &layer| mask | 1_u32 << (layer & 31));
+    BodySpec {
+        name,
+        kind: description.kind,
+        shape: shape(description),
+        pose: Pose { position: description.position.into(), angle: description.angle_deg.to_radians() },
+        velocity: Twist { linear: description.velocity.into(), angular: description.spin_deg.to_radians() },
+        mass: description.mass.map_or(MassSpec::Density(description.density), MassSpec::Mass),
+        surface: Surface {
+            static_friction: description.friction,
+            kinetic_friction: description.kinetic_friction.unwrap_or(description.friction),
+            rolling_friction: description.rolling_friction,
+            restitution: description.restitution,
+        },
+        filter: CollisionFilter {
+            layers: layers(&description.layers),
+            collides_with: description.collides_with.as_deref().map_or(u32::MAX, layers),
+        },
+        rotation: match description.rotation {
+            RotationRule::Free => Rotation::Free,
+            RotationRule::Locked => Rotation::Locked,
+        },
+        gravity_factor: description.gravity_factor,
+        motion: description.motion.as_ref().map_or(Motion::Still, motion),
+    }
+}
+
+/// The outline of a body; a small disc where none is given, which `Scene::validate` refuses.
+pub(crate) fn shape(description: &BodyDescription) -> Shape {
+    match (&description.outline, description.size, description.radius) {
+        (Some(outline), _, _) => Shape::Polygon(outline.iter().map(|&corner| corner.into()).collect()),
+        (None, Some([width, height]), _) => Shape::rectangle(width, height),
+        (None, None, radius) => Shape::Disc { radius: radius.unwrap_or_default() },
+    }
+}
+
+fn motion(description: &MotionDescription) -> Motion {
+    if !description.path.is_empty() {
+        let waypoint = |station: &crate::scene::Station| Waypoint {
+            time: station.time,
+            offset: station.offset.into(),
+            turn: station.turn_deg.to_radians(),
+        };
+        let repeat = if description.repeat_path { Repeat::Loop } else { Repeat::Once };
+        return Motion::Path { waypoints: description.path.iter().map(waypoint).collect(), repeat };
+    }
+    if description.frequency != 0.0 {
+        return Motion::Oscillate {
+            amplitude: description.amplitude.into(),
+            swing: description.swing_deg.to_radians(),
+            frequency: description.frequency,
+            phase: description.phase_deg.to_radians(),
+        };
+    }
+    Motion::Steady { velocity: description.velocity.into(), spin: description.spin_deg.to_radians() }
+}
+
+fn joint(description: &JointDescription, bodies: &Bodies) -> Option<Joint> {
+    let find = |name: &str| bodies.views().iter().position(|body| body.name == name).map(|id| id as u32);
+    let local = |id: u32, point: Vector64| {
+        let pose = bodies.pose(id);
+        Vector64::from_angle(-pose.angle).rotate(point - pose.position)
+    };
+    let body = find(&description.body)?;
+    let other = match &description.other {
+        Some(name) => Some(find(name)?),
+        None => None,
+    };
+    let at = Vector64::from(description.at);
+    let other_at = description.other_at.map_or(at, Vector64::from);
+    let rod = |rule| JointKind::Distance {
+        length: description.length.unwrap_or((at - other_at).length()),
+        compliance: description.compliance,
+        rule,
+    };
+    Some(Joint {
+        body,
+        other,
+        anchor: local(body, at),
+        other_anchor: other.map_or(other_at, |id| local(id, other_at)),
+        kind: match description.kind {
+            JointRule::Hinge => JointKind::Hinge {
+                motor: description
+                    .motor_speed_deg
+                    .map(|speed| Motor { speed: speed.to_radians(), max_torque: description.motor_torque }),
+            },
+            JointRule::Rod => rod(DistanceRule::Exact),
+            JointRule::Rope => rod(DistanceRule::AtMost),
+        },
+    })
+}
+
+/// Walls in the order of the description: half-planes, closed sides of tanks, obstacles.
+fn walls(scene: &Scene) -> Vec<Wall> {
+    let mut walls = Vec::new();
+    for wall in &scene.half_plane {
+        walls.push(Wall::half_plane(wall.point.into(), wall.normal.into(), Surface::with_friction(wall.friction)));
+    }
+    for tank in &scene.tank {
+        let sides = [Side::Left, Side::Right, Side::Bottom, Side::Top];
+        let all = Wall::tank(tank.min.into(), tank.max.into(), Surface::with_friction(tank.friction));
+        walls.extend(sides.into_iter().zip(all).filter(|(side, _)| !tank.open.contains(side)).map(|(_, wall)| wall));
+    }
+    for obstacle in &scene.obstacle {
+        let surface = Surface::with_friction(obstacle.friction);
+        walls.push(Wall::rectangle(obstacle.min.into(), obstacle.max.into(), surface));
+    }
+    walls
+}

@@ -1,0 +1,193 @@
+//! Rigid bodies among the particles: their lattice samples as rows, loads from the fluid, and a
+//! fluid that stays outside.
+
+use crate::bodies::{Bodies, Body};
+use crate::constraints::contact::Contacts;
+use crate::math::{Real, Vector, Vector64, vector, wide};
+use crate::neighbors::Neighbors;
+use crate::particles::Particles;
+use crate::phase::Phase;
+use crate::rows::RowIndex;
+
+/// The bodies of a run, their contacts, and the ids of their samples.
+pub struct RigidBodies {
+    pub(crate) bodies: Bodies,
+    pub(crate) contacts: Contacts,
+    /// Id of the first sample of each body, and one past the last of all.
+    first_sample: Vec<u32>,
+    /// Distance from a sample within which a particle may be inside the body [m].
+    near: Real,
+    trespassers: Vec<Trespasser>,
+}
+
+/// A fluid particle that may be inside a body.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+struct Trespasser {
+    row: u32,
+    body: u32,
+}
+
+impl RigidBodies {
+    /// Bodies whose samples have consecutive ids from `first_sample`, body by body.
+    /// Without a fluid nobody sees the samples: then there are none.
+    pub(crate) fn new(bodies: Bodies, contacts: Contacts, first_sample: Option<u32>, spacing: f64) -> Self {
+        let mut next = first_sample.unwrap_or(0);
+        let mut first = vec![next];
+        for body in bodies.views() {
+            next += if first_sample.is_some() { body.samples.len() as u32 } else { 0 };
+            first.push(next);
+        }
+        RigidBodies { bodies, contacts, first_sample: first, near: (0.75 * spacing) as Real, trespassers: Vec::new() }
+    }
+
+    /// The bodies as they are read from outside.
+    pub fn views(&self) -> &[Body] {
+        self.bodies.views()
+    }
+
+    /// Fastest point of any body that moves [m/s].
+    pub(crate) fn speed_max(&self) -> f64 {
+        let speed = |id: usize| {
+            let velocity = self.bodies.velocities[id];
+            velocity.linear.length() + velocity.angular.abs() * self.bodies.reaches[id]
+        };
+        (0..self.bodies.len()).filter(|&id| self.bodies.is_active(id)).map(speed).fold(0.0, f64::max)
+    }
+
+    /// Bodies that may have to carry each other: the height of all that are awake over the smallest.
+    pub(crate) fn support_chain(&self, gravity: Vector64) -> f64 {
+        let bodies = &self.bodies;
+        let awake = || (0..bodies.len()).filter(|&id| bodies.is_dynamic(id) && !bodies.asleep[id]);
+        let down = gravity.normalize_or_zero();
+        let heights = awake().map(|id| bodies.poses[id].position.dot(down));
+        let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
+        let smallest = awake().map(|id| bodies.sizes[id]).fold(f64::INFINITY, f64::min);
+        if high >= low { ((high - low) / smallest + 1.0).min(awake().count() as f64) } else { 0.0 }
+    }
+
+    /// Finds contacts, predicts the bodies and applies the impulses kept from the last substep.
+    pub(crate) fn predict(&mut self, dt: f64, time: f64, gravity: Vector64) {
+        self.contacts.begin_substep(&mut self.bodies, dt, gravity);
+        self.bodies.predict(dt, time, gravity);
+        self.contacts.warm_start(&mut self.bodies);
+    }
+
+    /// One iteration of all contacts and joints.
+    pub(crate) fn iterate_contacts(&mut self) {
+        self.contacts.iterate(&mut self.bodies);
+    }
+
+    /// Puts the samples where the bodies are predicted to be.
+    pub(crate) fn place_samples(&self, particles: &mut Particles, rows: &RowIndex) {
+        self.each_sample(rows, |body, sample, row| {
+            let (start, end) = (self.bodies.pose(body).apply(sample), self.bodies.predicted_pose(body).apply(sample));
+            particles.start[row] = vector(start);
+            particles.position[row] = vector(end);
+            particles.displacement[row] = vector(end - start);
+            particles.remainder[row] = Vector::ZERO;
+        });
+    }
+
+    /// Ends a substep: poses and velocities follow from the displacements.
+    pub(crate) fn integrate(&mut self, dt: f64) {
+        self.bodies.integrate(dt);
+        self.contacts.restitute(&mut self.bodies);
+        self.contacts.depenetrate(&mut self.bodies);
+    }
+
+    /// Puts the samples where the bodies are, with the velocity of the body's matter.
+    pub(crate) fn settle_samples(&self, particles: &mut Particles, rows: &RowIndex) {
+        self.each_sample(rows, |body, sample, row| {
+            let place = self.bodies.pose(body).apply(sample);
+            particles.position[row] = vector(place);
+            particles.velocity[row] = vector(self.bodies.velocity_at(body, place));
+        });
+    }
+
+    /// Sums the forces on the samples of each body, in the order of its samples.
+    /// `loads` are forces times dt^2 by row [kg m].
+    pub(crate) fn take_loads(&mut self, loads: &[Vector], particles: &Particles, rows: &RowIndex, dt: f64) {
+        for body in 0..self.bodies.len() as u32 {
+            let center = self.bodies.predicted_pose(body).position;
+            let (mut force, mut torque) = (Vector64::ZERO, 0.0);
+            for id in self.first_sample[body as usize]..self.first_sample[body as usize + 1] {
+                let Some(row) = rows.row(id) else { continue };
+                let load = wide(loads[row as usize]);
+                force += load;
+                torque += (wide(particles.position[row as usize]) - center).perp_dot(load);
+            }
+            if force != Vector64::ZERO || torque != 0.0 {
+                self.bodies.load(body, force / (dt * dt), torque / (dt * dt), dt);
+            }
+        }
+    }
+
+    /// Moves fluid particles out of bodies along the nearest face; particle and body share the momentum.
+    pub(crate) fn expel(&mut self, particles: &mut Particles, neighbors: &Neighbors, rows: &RowIndex, dt: f64) {
+        self.find_trespassers(particles, neighbors, rows);
+        for &Trespasser { row, body } in &self.trespassers {
+            let (row, pose) = (row as usize, self.bodies.predicted_pose(body));
+            let arm = wide(particles.position[row]) - pose.position;
+            let turned = Vector64::from_angle(-pose.angle).rotate(arm);
+            let nearest = nearest(&self.bodies.views()[body as usize], turned);
+            if nearest.distance >= 0.0 {
+                continue;
+            }
+            let normal = Vector64::from_angle(pose.angle).rotate(nearest.normal);
+            let response = self.bodies.response(body);
+            let lever = arm.perp_dot(normal);
+            let own = f64::from(particles.inverse_mass[row]);
+            let impulse = -nearest.distance / (own + response.linear + response.angular * lever * lever);
+            particles.displacement[row] += vector(normal * (impulse * own));
+            particles.position[row] = particles.start[row] + (particles.displacement[row] + particles.remainder[row]);
+            let force = -normal * impulse / (dt * dt);
+            self.bodies.load(body, force, arm.perp_dot(force), dt);
+        }
+    }
+
+    fn find_trespassers(&mut self, particles: &Particles, neighbors: &Neighbors, rows: &RowIndex) {
+        let mut found = std::mem::take(&mut self.trespassers);
+        found.clear();
+        let periodic = neighbors.periodic();
+        self.each_sample(rows, |body, _, sample| {
+            let x = particles.position[sample];
+            neighbors.for_each(sample, |row| {
+                let apart = periodic.min_image(particles.position[row] - x);
+                let movable = particles.phase[row] != Phase::Rigid && particles.inverse_mass[row] > 0.0;
+                if movable && apart.length_squared() < self.near * self.near {
+                    found.push(Trespasser { row: row as u32, body });
+                }
+            });
+        });
+        found.sort_unstable();
+        found.dedup();
+        self.trespassers = found;
+    }
+
+    /// Visits the samples whose rows are known: body, place in the body, row.
+    fn each_sample(&self, rows: &RowIndex, mut visit: impl FnMut(u32, Vector64, usize)) {
+        for (body, view) in self.bodies.views().iter().enumerate() {
+            let ids = self.first_sample[body]..self.first_sample[body + 1];
+            for (id, &sample) in ids.zip(&view.samples) {
+                if let Some(row) = rows.row(id) {
+                    visit(body as u32, sample, row as usize);
+                }
+            }
+        }
+    }
+
+    /// Ends a frame: sleep, mean loads.
+    pub(crate) fn finish_frame(&mut self, frame_time: f64) {
+        self.contacts.finish_frame(&mut self.bodies, frame_time);
+        self.bodies.finish_frame(frame_time);
+    }
+}
+
+/// The nearest point of a body's outline, in body coordinates.
+fn nearest(body: &Body, point: Vector64) -> crate::shapes::Nearest {
+    if body.radius > 0.0 {
+        crate::shapes::Shape::Disc { radius: body.radius }.nearest(point)
+    } else {
+        crate::shapes::nearest_on_polygon(&body.outline, point)
+    }
+}
