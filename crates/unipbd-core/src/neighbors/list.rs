@@ -100,15 +100,18 @@ impl NeighborList {
         let positions = &positions[..grid.rows()];
         self.rows = positions.len();
         self.radius = radius;
-        self.chunks.resize_with(self.rows.div_ceil(CHUNK_ROWS), Chunk::default);
+        let used = self.rows.div_ceil(CHUNK_ROWS);
+        // Chunks beyond the last row keep their memory for when there are more rows again.
+        self.chunks.resize_with(used.max(self.chunks.len()), Chunk::default);
+        self.chunks[used..].iter_mut().for_each(Chunk::clear);
         let search = &Search { grid, positions, radius };
         if grid.periodic().any() {
             let space = Wrapped::new(grid.periodic());
-            parallelism.each(self.rows, &mut self.chunks, |number, chunk| {
+            parallelism.each(self.rows, &mut self.chunks[..used], |number, chunk| {
                 near::dispatch(level, Build { search, space, number, chunk });
             });
         } else {
-            parallelism.each(self.rows, &mut self.chunks, |number, chunk| {
+            parallelism.each(self.rows, &mut self.chunks[..used], |number, chunk| {
                 near::dispatch(level, Build { search, space: Open, number, chunk });
             });
         }
@@ -139,7 +142,7 @@ impl NeighborList {
     /// The chunks, in row order: chunk `c` holds the rows from `c *` [`CHUNK_ROWS`].
     #[inline]
     pub fn chunks(&self) -> &[Chunk] {
-        &self.chunks
+        &self.chunks[..self.rows.div_ceil(CHUNK_ROWS)]
     }
 
     #[inline]

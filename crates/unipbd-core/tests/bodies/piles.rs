@@ -49,9 +49,7 @@ fn twenty_boxes_stand() {
         world.run(19.0);
         let speed = world.fastest_in(1.0);
         let (drift, overlap) = (drift(&world, &start), world.penetration());
-        println!(
-            "stack of 20, offset {offset}: speed {speed:.1e} m/s, drift {drift:.1e} m, overlap {overlap:.1e} m"
-        );
+        println!("stack of 20, offset {offset}: speed {speed:.1e} m/s, drift {drift:.1e} m, overlap {overlap:.1e} m");
         assert!(drift <= 0.02 && overlap <= 1e-3 && speed < 0.02);
     }
 }
