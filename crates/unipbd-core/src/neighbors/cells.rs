@@ -46,17 +46,17 @@ impl Axis {
         }
     }
 
-    /// The one or two stretches of cells that hold everything within `radius` of `x`.
+    /// The one or two stretches of cells that hold everything within `radius` of `low..=high`.
     #[inline(always)]
-    pub fn near(&self, x: Real, radius: Real) -> (Span, Option<Span>) {
+    pub fn near(&self, low: Real, high: Real, radius: Real) -> (Span, Option<Span>) {
         let Some((axis, count)) = self.period else {
             // Distances are rounded: what counts as within the radius may lie a few roundings outside it.
             let reach = radius * (1.0 + 8.0 * Real::EPSILON);
-            return (Span { first: self.cell(x - reach), last: self.cell(x + reach) }, None);
+            return (Span { first: self.cell(low - reach), last: self.cell(high + reach) }, None);
         };
-        let at = (axis.wrap(x) - axis.from) * self.inverse;
+        let at = |x: Real| (axis.wrap(x) - axis.from) * self.inverse;
         let reach = radius * self.inverse + (0.001 + 16.0 * Real::EPSILON * count as Real);
-        let (first, last) = (floor(at - reach), floor(at + reach));
+        let (first, last) = (floor(at(low) - reach), floor(at(high) + reach));
         if i64::from(last) - i64::from(first) + 1 >= i64::from(count) {
             return (Span { first: 0, last: count - 1 }, None);
         }

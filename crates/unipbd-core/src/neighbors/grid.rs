@@ -133,9 +133,24 @@ impl Grid {
     /// Visits runs of consecutive rows that together hold every indexed row whose position, when
     /// sorted, was within `radius` of `point`, and some more; no row twice.
     #[inline]
-    pub fn for_each_run(&self, point: Vector, radius: Real, cursor: &mut Cursor, mut visit: impl FnMut(Range<u32>)) {
-        let (rows, more_rows) = self.cells.rows.near(point.y, radius);
-        let (bins, more_bins) = self.cells.bins.near(point.x, radius);
+    pub fn for_each_run(&self, point: Vector, radius: Real, cursor: &mut Cursor, visit: impl FnMut(Range<u32>)) {
+        self.for_each_run_around(point, point, radius, cursor, visit);
+    }
+
+    /// Visits runs of consecutive rows that together hold every indexed row whose position, when
+    /// sorted, was within `radius` of a point of the box from `low` to `high`, and some more; no row
+    /// twice. On a periodic axis a box must not cross the border.
+    #[inline]
+    pub(super) fn for_each_run_around(
+        &self,
+        low: Vector,
+        high: Vector,
+        radius: Real,
+        cursor: &mut Cursor,
+        mut visit: impl FnMut(Range<u32>),
+    ) {
+        let (rows, more_rows) = self.cells.rows.near(low.y, high.y, radius);
+        let (bins, more_bins) = self.cells.bins.near(low.x, high.x, radius);
         self.runs_in(rows, bins, cursor, &mut visit);
         if more_bins.is_none() && more_rows.is_none() {
             return;

@@ -9,7 +9,8 @@
 use super::grid::{Cursor, Grid};
 use crate::math::{Real, Vector};
 use crate::parallel::{CHUNK_ROWS, Parallelism};
-use crate::simd::near::{self, Near, SPARE, Work};
+use crate::simd::Level;
+use crate::simd::near::{self, Found, Near, Work};
 use crate::simd::space::{Open, Space, Wrapped};
 use std::ops::Range;
 
@@ -74,7 +75,7 @@ impl Chunk {
         self.blocks.capacity() * size_of::<Block>()
             + self.narrow.capacity() * 16
             + self.wide.capacity() * 32
-            + self.scratch.found.capacity() * 4
+            + self.scratch.found.memory_bytes()
             + self.scratch.runs.capacity() * 8
     }
 }
@@ -92,19 +93,26 @@ impl NeighborList {
     /// been ordered for this radius or a larger one. `positions` are those the grid was ordered by,
     /// permuted by that order. Within a list, neighbours come in the order in which the grid's runs come.
     pub fn build(&mut self, grid: &Grid, positions: &[Vector], radius: Real, parallelism: Parallelism) {
+        self.build_at(Level::best(), grid, positions, radius, parallelism);
+    }
+
+    fn build_at(&mut self, level: Level, grid: &Grid, positions: &[Vector], radius: Real, parallelism: Parallelism) {
         let positions = &positions[..grid.rows()];
         self.rows = positions.len();
         self.radius = radius;
-        self.chunks.resize_with(self.rows.div_ceil(CHUNK_ROWS), Chunk::default);
+        let used = self.rows.div_ceil(CHUNK_ROWS);
+        // Chunks beyond the last row keep their memory for when there are more rows again.
+        self.chunks.resize_with(used.max(self.chunks.len()), Chunk::default);
+        self.chunks[used..].iter_mut().for_each(Chunk::clear);
         let search = &Search { grid, positions, radius };
         if grid.periodic().any() {
             let space = Wrapped::new(grid.periodic());
-            parallelism.each(self.rows, &mut self.chunks, |number, chunk| {
-                near::dispatch(Build { search, space, number, chunk });
+            parallelism.each(self.rows, &mut self.chunks[..used], |number, chunk| {
+                near::dispatch(level, Build { search, space, number, chunk });
             });
         } else {
-            parallelism.each(self.rows, &mut self.chunks, |number, chunk| {
-                near::dispatch(Build { search, space: Open, number, chunk });
+            parallelism.each(self.rows, &mut self.chunks[..used], |number, chunk| {
+                near::dispatch(level, Build { search, space: Open, number, chunk });
             });
         }
     }
@@ -134,7 +142,7 @@ impl NeighborList {
     /// The chunks, in row order: chunk `c` holds the rows from `c *` [`CHUNK_ROWS`].
     #[inline]
     pub fn chunks(&self) -> &[Chunk] {
-        &self.chunks
+        &self.chunks[..self.rows.div_ceil(CHUNK_ROWS)]
     }
 
     #[inline]
@@ -172,35 +180,10 @@ fn shifted(first: usize, offset: i32) -> usize {
     first.wrapping_add_signed(offset as isize)
 }
 
-/// The rows found for the eight lanes of one block, before they are transposed.
-#[derive(Default)]
-struct Scratch {
-    found: Vec<u32>,
-    /// Room per lane.
-    room: usize,
-    /// Where one row's neighbours may be.
-    runs: Vec<Range<u32>>,
-}
+/// A block whose rows are spread over more than this many radii searches for each row by itself.
+const TOGETHER: Real = 4.0;
 
-impl Scratch {
-    fn list(&self, lane: usize, count: u32) -> &[u32] {
-        &self.found[lane * self.room..][..count as usize]
-    }
-
-    /// Makes room for `room` rows per lane, keeping what lanes up to `lane` have found.
-    #[cold]
-    fn grow(&mut self, room: usize) {
-        let room = room.next_multiple_of(64);
-        let mut found = vec![0; room * LANES];
-        if self.room > 0 {
-            for (old, new) in self.found.chunks(self.room).zip(found.chunks_mut(room)) {
-                new[..self.room].copy_from_slice(old);
-            }
-        }
-        (self.found, self.room) = (found, room);
-    }
-}
-
+/// What the list is built from.
 struct Search<'a> {
     grid: &'a Grid,
     positions: &'a [Vector],
@@ -221,99 +204,140 @@ impl<S: Space> Work for Build<'_, S> {
         let Build { search, space, number, chunk } = self;
         let first = number * CHUNK_ROWS;
         let last = search.positions.len().min(first + CHUNK_ROWS);
-        chunk.blocks.clear();
-        chunk.narrow.clear();
-        chunk.wide.clear();
-        chunk.pairs = 0;
+        chunk.clear();
         let mut cursor = Cursor::default();
         for base in (first..last).step_by(LANES) {
-            let mut counts = [0; LANES];
-            for (lane, count) in counts.iter_mut().enumerate().take(last - base) {
-                *count = search.find(near, space, base + lane, lane, &mut chunk.scratch, &mut cursor);
+            chunk.scratch.found.start(base, search.positions);
+            let lanes = LANES.min(last - base);
+            let together = search.extent(&chunk.scratch.found.centers);
+            chunk.scratch.reach = base as u32..base as u32;
+            // One search per turn: for all rows, or for each.
+            for turn in 0..if together.is_some() { 1 } else { lanes } {
+                let (low, high, lanes) = match together {
+                    Some((low, high)) => (low, high, 0..lanes),
+                    None => (search.positions[base + turn], search.positions[base + turn], turn..turn + 1),
+                };
+                chunk.scratch.find_runs(search, low, high, &mut cursor);
+                for k in 0..chunk.scratch.runs.len() {
+                    let run = chunk.scratch.runs[k].start as usize..chunk.scratch.runs[k].end as usize;
+                    let limit = search.radius * search.radius;
+                    near.find(space, limit, search.positions, run, lanes.clone(), &mut chunk.scratch.found);
+                }
             }
-            chunk.push(base, counts, search.positions.len());
+            chunk.push(near, base, search.positions.len());
         }
     }
 }
 
 impl Search<'_> {
-    /// Collects the neighbours of `row` in its lane of the scratch.
+    /// The bounding box of the rows of a block, unless it is so large that they are better searched one by one.
     #[inline(always)]
-    fn find<N: Near, S: Space>(
-        &self,
-        near: N,
-        space: S,
-        row: usize,
-        lane: usize,
-        scratch: &mut Scratch,
-        cursor: &mut Cursor,
-    ) -> u32 {
-        let center = self.positions[row];
-        let limit = self.radius * self.radius;
-        scratch.runs.clear();
-        let own = row as u32;
-        self.grid.for_each_run(center, self.radius, cursor, |run| {
-            // The row itself is left out by searching before and after it.
-            if run.contains(&own) {
-                scratch.runs.extend([run.start..own, own + 1..run.end]);
-            } else {
-                scratch.runs.push(run);
-            }
-        });
-        let mut count = 0;
-        for k in 0..scratch.runs.len() {
-            let run = scratch.runs[k].start as usize..scratch.runs[k].end as usize;
-            if count + run.len() + SPARE > scratch.room {
-                scratch.grow(count + run.len() + SPARE);
-            }
-            let found = &mut scratch.found[lane * scratch.room + count..(lane + 1) * scratch.room];
-            count += near.find(space, center, limit, self.positions, run, found);
+    fn extent(&self, centers: &[Vector; LANES]) -> Option<(Vector, Vector)> {
+        let periodic = self.grid.periodic();
+        let wrapped = centers.map(|center| periodic.wrap(center));
+        // Comparisons pass over what is not a number, except in the first lane, where it ends in `None`.
+        let (mut low, mut high) = (wrapped[0], wrapped[0]);
+        for x in wrapped {
+            low = Vector::new(if x.x < low.x { x.x } else { low.x }, if x.y < low.y { x.y } else { low.y });
+            high = Vector::new(if x.x > high.x { x.x } else { high.x }, if x.y > high.y { x.y } else { high.y });
         }
-        count as u32
+        let size = high - low;
+        (size.x <= TOGETHER * self.radius && size.y <= TOGETHER * self.radius).then_some((low, high))
+    }
+}
+
+/// Space to build a block in.
+#[derive(Default)]
+struct Scratch {
+    found: Found,
+    /// Where neighbours may be.
+    runs: Vec<Range<u32>>,
+    /// From the first to the last row of all runs of the block.
+    reach: Range<u32>,
+}
+
+impl Scratch {
+    /// Collects the runs around a box.
+    #[inline(always)]
+    fn find_runs(&mut self, search: &Search<'_>, low: Vector, high: Vector, cursor: &mut Cursor) {
+        self.runs.clear();
+        search.grid.for_each_run_around(low, high, search.radius, cursor, |run| {
+            self.reach = self.reach.start.min(run.start)..self.reach.end.max(run.end);
+            self.runs.push(run);
+        });
     }
 }
 
 impl Chunk {
-    /// Transposes the lanes of the scratch into columns.
+    fn clear(&mut self) {
+        self.blocks.clear();
+        self.narrow.clear();
+        self.wide.clear();
+        self.pairs = 0;
+    }
+
+    /// Transposes what was found for a block into columns.
     #[inline(always)]
-    fn push(&mut self, base: usize, counts: [u32; LANES], rows: usize) {
+    fn push(&mut self, near: impl Near, base: usize, rows: usize) {
+        let (found, reach) = (&self.scratch.found, &self.scratch.reach);
+        let counts = found.counts;
         self.pairs += counts.iter().map(|&count| u64::from(count)).sum::<u64>();
-        let depth = counts.into_iter().max().unwrap_or(0).next_multiple_of(2);
-        let lists: [&[u32]; LANES] = std::array::from_fn(|lane| self.scratch.list(lane, counts[lane]));
+        let depth = counts.into_iter().fold(0, u32::max).next_multiple_of(2);
         // A lane beyond the last row is padded with the last row.
-        let padding: [i32; LANES] = std::array::from_fn(|lane| lane.min(rows - 1 - base) as i32);
-        let (start, width) = if lists.iter().all(|list| fits_narrow(list, base)) {
+        let padding: [i16; LANES] = std::array::from_fn(|lane| lane.min(rows - 1 - base) as i16);
+        let narrow = base - reach.start as usize <= 1 << 15 && reach.end as usize - base <= 1 << 15;
+        let (start, width) = if narrow {
             let start = self.narrow.len();
-            self.narrow.resize(start + depth as usize, padding.map(|offset| offset as i16));
-            transpose(&mut self.narrow[start..], lists, |row| relative(row, base) as i16);
+            near.columns(found, depth as usize, padding, &mut self.narrow);
             (start, Width::Narrow)
         } else {
             let start = self.wide.len();
-            self.wide.resize(start + depth as usize, padding);
-            transpose(&mut self.wide[start..], lists, |row| relative(row, base));
+            found.transpose(depth as usize, padding.map(i32::from), |offset| offset, &mut self.wide);
             (start, Width::Wide)
         };
         self.blocks.push(Block { counts, depth, start: start as u32, width });
     }
 }
 
-/// A row as seen from the first row of a block.
-#[inline(always)]
-fn relative(row: u32, base: usize) -> i32 {
-    row.wrapping_sub(base as u32) as i32
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::neighbors::{Periodic, PeriodicAxis};
 
-#[inline(always)]
-fn fits_narrow(list: &[u32], base: usize) -> bool {
-    let (low, high) = list.iter().map(|&row| relative(row, base)).fold((0, 0), |(l, h), o| (o.min(l), o.max(h)));
-    low >= i32::from(i16::MIN) && high <= i32::from(i16::MAX)
-}
+    fn columns(list: &NeighborList) -> Vec<([u32; LANES], Vec<[i32; LANES]>)> {
+        let blocks = list.chunks.iter().flat_map(|chunk| chunk.blocks.iter().map(move |block| (chunk, block)));
+        let wide = |(chunk, block): (&Chunk, &Block)| match chunk.entries(block) {
+            Entries::Narrow(columns) => (block.counts, columns.iter().map(|c| c.map(i32::from)).collect()),
+            Entries::Wide(columns) => (block.counts, columns.to_vec()),
+        };
+        blocks.map(wide).collect()
+    }
 
-#[inline(always)]
-fn transpose<E>(columns: &mut [[E; LANES]], lists: [&[u32]; LANES], entry: impl Fn(u32) -> E) {
-    for (lane, list) in lists.into_iter().enumerate() {
-        for (column, &row) in columns.iter_mut().zip(list) {
-            column[lane] = entry(row);
+    #[test]
+    fn every_level_builds_the_same_list() {
+        let axis = Some(PeriodicAxis { from: 0.0, length: 30.0 });
+        let mut state = 3u64;
+        let mut random = || {
+            state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            (state >> 40) as Real / (1u64 << 24) as Real * 30.0
+        };
+        for periodic in [Periodic::NONE, Periodic { x: axis, y: None }, Periodic { x: axis, y: axis }] {
+            for (rows, squeeze) in [(0, 1.0), (1, 1.0), (7, 1.0), (9, 0.1), (50, 0.05), (700, 1.0), (1500, 1.0)] {
+                let mut points: Vec<_> = (0..rows).map(|_| Vector::new(random() * squeeze, random())).collect();
+                if rows > 1000 {
+                    (points[500].x, points[900]) = (Real::NAN, Vector::splat(1e30));
+                }
+                let mut grid = Grid::new(periodic);
+                let order = grid.order(&points, rows, 1.5, Parallelism::Serial);
+                let sorted: Vec<_> = order.iter().map(|&row| points[row as usize]).collect();
+                let mut oracle = NeighborList::default();
+                oracle.build_at(Level::Scalar, &grid, &sorted, 1.5, Parallelism::Serial);
+                for level in Level::available() {
+                    let mut list = NeighborList::default();
+                    list.build_at(level, &grid, &sorted, 1.5, Parallelism::Serial);
+                    assert!(columns(&list) == columns(&oracle), "{level:?}, {rows} rows, {periodic:?}");
+                }
+            }
         }
     }
 }

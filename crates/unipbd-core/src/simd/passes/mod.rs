@@ -27,6 +27,7 @@ pub struct Pairs<'a> {
     list: &'a NeighborList,
     periodic: Periodic,
     parallelism: Parallelism,
+    #[cfg_attr(feature = "f64", allow(dead_code))]
     level: Level,
 }
 
@@ -157,6 +158,7 @@ impl<'a> Weights<'a> {
 }
 
 /// Rows of a column that is read only where `used`.
+#[cfg_attr(feature = "f64", allow(dead_code))]
 fn rows_if(used: bool, column: &[Real]) -> usize {
     if used { column.len() } else { usize::MAX }
 }
@@ -170,6 +172,7 @@ pub(super) trait Pass<const N: usize>: Sync {
     fn finish<M: Number>(&self, sums: [M; N]) -> [M; N];
 
     /// Rows that every column it reads has.
+    #[cfg_attr(feature = "f64", allow(dead_code))]
     fn shortest_column(&self) -> usize;
 }
 
