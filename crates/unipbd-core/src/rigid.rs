@@ -8,6 +8,7 @@ use crate::neighbors::Neighbors;
 use crate::particles::Particles;
 use crate::phase::Phase;
 use crate::rows::RowIndex;
+use crate::walls::Walls;
 
 /// The bodies of a run, their contacts, and the ids of their samples.
 pub struct RigidBodies {
@@ -43,15 +44,6 @@ impl RigidBodies {
     /// The bodies as they are read from outside.
     pub fn views(&self) -> &[Body] {
         self.bodies.views()
-    }
-
-    /// Fastest point of any body that moves [m/s].
-    pub(crate) fn speed_max(&self) -> f64 {
-        let speed = |id: usize| {
-            let velocity = self.bodies.velocities[id];
-            velocity.linear.length() + velocity.angular.abs() * self.bodies.reaches[id]
-        };
-        (0..self.bodies.len()).filter(|&id| self.bodies.is_active(id)).map(speed).fold(0.0, f64::max)
     }
 
     /// Bodies that may have to carry each other: the height of all that are awake over the smallest.
@@ -123,7 +115,14 @@ impl RigidBodies {
     }
 
     /// Moves fluid particles out of bodies along the nearest face; particle and body share the momentum.
-    pub(crate) fn expel(&mut self, particles: &mut Particles, neighbors: &Neighbors, rows: &RowIndex, dt: f64) {
+    pub(crate) fn expel(
+        &mut self,
+        particles: &mut Particles,
+        neighbors: &Neighbors,
+        walls: &Walls,
+        rows: &RowIndex,
+        dt: f64,
+    ) {
         self.find_trespassers(particles, neighbors, rows);
         for &Trespasser { row, body } in &self.trespassers {
             let (row, pose) = (row as usize, self.bodies.predicted_pose(body));
@@ -134,14 +133,22 @@ impl RigidBodies {
                 continue;
             }
             let normal = Vector64::from_angle(pose.angle).rotate(nearest.normal);
+            let depth = -nearest.distance;
+            // Only what the two have come nearer in this substep becomes velocity.
+            let moved = wide(particles.displacement[row]) - self.bodies.displacement_at(body, arm);
+            let approach = (-moved.dot(normal)).clamp(0.0, depth);
             let response = self.bodies.response(body);
             let lever = arm.perp_dot(normal);
             let own = f64::from(particles.inverse_mass[row]);
-            let impulse = -nearest.distance / (own + response.linear + response.angular * lever * lever);
+            let impulse = approach / (own + response.linear + response.angular * lever * lever);
             particles.displacement[row] += vector(normal * (impulse * own));
-            particles.position[row] = particles.start[row] + (particles.displacement[row] + particles.remainder[row]);
             let force = -normal * impulse / (dt * dt);
             self.bodies.load(body, force, arm.perp_dot(force), dt);
+            let rest = vector(normal * (depth - approach));
+            let place = particles.start[row] + rest + (particles.displacement[row] + particles.remainder[row]);
+            let kept = walls.clamp(place);
+            particles.start[row] += rest + (kept - place);
+            particles.position[row] = kept;
         }
     }
 

@@ -138,6 +138,11 @@ impl Bodies {
         self.velocities[id as usize].at(point - self.poses[id as usize].position)
     }
 
+    /// Displacement in the running substep of the body's matter at `arm` from its centre of mass [m].
+    pub(crate) fn displacement_at(&self, id: u32, arm: Vector64) -> Vector64 {
+        self.displacements[id as usize].at(arm)
+    }
+
     /// Lattice samples in body coordinates [m].
     pub fn samples(&self, id: u32) -> &[Vector64] {
         &self.views[id as usize].samples

@@ -125,7 +125,7 @@ impl World {
         if let Some(rigid) = &mut parts.rigid {
             rigid.take_loads(self.corrections.loads(), &parts.particles, &self.rows, self.clock.dt);
             if self.stages.contains(&Stage::FindNeighbors) {
-                rigid.expel(&mut parts.particles, &parts.neighbors, &self.rows, self.clock.dt);
+                rigid.expel(&mut parts.particles, &parts.neighbors, &parts.walls, &self.rows, self.clock.dt);
             }
         }
     }

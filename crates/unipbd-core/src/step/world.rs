@@ -43,6 +43,11 @@ pub(crate) struct Parts {
     pub parallelism: Parallelism,
 }
 
+/// Pressures up to this many times what depth and speed account for are believed.
+const PRESSURE_MARGIN: f64 = 8.0;
+/// Speed, in spacings per frame, that a compressed liquid may always reach.
+const LEAST_SPEED: f64 = 2.0;
+
 /// Where a run is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Clock {
@@ -53,6 +58,8 @@ pub(crate) struct Clock {
     pub dt: f64,
     pub substeps: u32,
     pub list_builds: u32,
+    /// Largest pressure over density that a liquid may push with [m^2/s^2].
+    pub pressure_limit: f64,
     /// Fastest dense particle after the last substep [m/s].
     pub speed: f64,
     /// Advances whenever particles are added or removed.
@@ -139,6 +146,7 @@ impl World {
         let ids_before = self.parts.particles.ids_given();
         let builds_before = self.parts.neighbors.builds();
         let substeps = self.choose_substeps();
+        self.clock.pressure_limit = self.pressure_limit();
         let start = self.clock.frame as f64 * self.parts.frame_time;
         self.clock.dt = self.parts.frame_time / f64::from(substeps);
         self.clock.substeps = substeps;
@@ -161,6 +169,7 @@ impl World {
     /// Brings the start to its rest density: projection without gravity and without velocity.
     pub fn settle(&mut self, substeps: u32) {
         self.clock.dt = self.parts.frame_time;
+        self.clock.pressure_limit = self.pressure_limit();
         if self.parts.particles.dense() > 0 {
             (0..substeps).for_each(|_| self.hold_still());
         }
@@ -176,6 +185,7 @@ impl World {
         Substep {
             dt: clock.dt as Real,
             time: clock.time,
+            pressure_limit: clock.pressure_limit as Real,
             particles: &parts.particles,
             rows,
             neighbors: &parts.neighbors,
@@ -245,18 +255,40 @@ impl World {
         if depth.is_finite() { f64::from(gravity) * depth * self.density_ratio() } else { 0.0 }
     }
 
-    /// Largest pressure over density of a liquid after the last substep, lambda w/dt^2 [m^2/s^2].
+    /// Pressure over density of the liquids after the last substep [m^2/s^2]: the largest one if it
+    /// grows linearly with depth, taken from the mean square, so that a few particles squeezed in
+    /// somewhere do not decide for all.
     fn multiplier_pressure(&self) -> f64 {
         if self.clock.step == 0 {
             return 0.0;
         }
         let particles = &self.parts.particles;
-        let pressure = |row: usize| match particles.phase[row] {
-            Phase::Liquid => particles.multiplier[row] * particles.inverse_mass[row],
-            _ => 0.0,
-        };
-        let largest = self.parts.parallelism.max(particles.dense(), pressure).max(0.0);
-        f64::from(largest) / (self.clock.dt * self.clock.dt)
+        let (sum, count) = self.over_liquids(|row| {
+            let pressure = f64::from(particles.multiplier[row] * particles.inverse_mass[row]);
+            pressure * pressure
+        });
+        (3.0 * sum / count.max(1.0)).sqrt() / (self.clock.dt * self.clock.dt)
+    }
+
+    /// The pressure that a liquid as deep and as fast as this one can reach, with a wide margin
+    /// [m^2/s^2]. The speed is the fourth root of the mean fourth power: jets count, single drops do not.
+    fn pressure_limit(&self) -> f64 {
+        let velocities = &self.parts.particles.velocity;
+        let (sum, count) = self.over_liquids(|row| {
+            let square = f64::from(velocities[row].length_squared());
+            square * square
+        });
+        let dynamic = 0.5 * (sum / count.max(1.0)).sqrt();
+        let least = LEAST_SPEED * self.parts.spacing / self.parts.frame_time;
+        PRESSURE_MARGIN * (self.depth_pressure() + dynamic) + least * least
+    }
+
+    /// Sum of a value over the liquid particles, and their number.
+    fn over_liquids(&self, value: impl Fn(usize) -> f64 + Sync) -> (f64, f64) {
+        let particles = &self.parts.particles;
+        let liquid = |row: usize| particles.phase[row] == Phase::Liquid;
+        let sum = self.parts.parallelism.sum(particles.dense(), |row| if liquid(row) { value(row) } else { 0.0 });
+        (sum, self.parts.parallelism.sum(particles.dense(), |row| f64::from(u8::from(liquid(row)))))
     }
 
     /// Density of the heaviest liquid over that of the lightest: a light liquid carries a heavy one.
