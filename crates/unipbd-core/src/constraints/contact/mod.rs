@@ -79,7 +79,7 @@ pub struct Depenetration {
 
 impl Default for Depenetration {
     fn default() -> Self {
-        Depenetration { slop: 1e-4, fraction: 0.1, deep: 0.01, deep_fraction: 0.2, speed: 3.0 }
+        Depenetration { slop: 1e-4, fraction: 0.1, deep: 0.01, deep_fraction: 0.4, speed: 3.0 }
     }
 }
 
