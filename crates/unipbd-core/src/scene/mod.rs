@@ -11,6 +11,7 @@ mod materials;
 mod nearest;
 mod problem;
 mod settings;
+mod shorthand;
 mod sources;
 mod validate;
 mod walls;
