@@ -8,7 +8,9 @@ mod pipeline;
 mod solver;
 mod stages;
 mod substeps;
+mod threads;
 mod timings;
+mod view;
 mod world;
 
 pub use error::SolverError;
@@ -16,4 +18,6 @@ pub use integrate::BodyForce;
 pub use pipeline::Stage;
 pub use solver::{FrameReport, Solver};
 pub use substeps::{Choice, Demand, SubstepRule};
-pub(crate) use world::Parts;
+pub use view::SubstepView;
+pub(crate) use stages::ABSURD_SPEED;
+pub(crate) use world::{Clock, Parts, Population};
