@@ -1,7 +1,48 @@
 //! The `unipbd` command line as a library: scene files, runs, logs, pictures.
 
+pub mod args;
+mod commands;
+mod exit;
+mod interrupt;
 pub mod read;
 pub mod record;
 pub mod render;
+mod report;
 pub mod scene_file;
+pub mod simulation;
 pub mod snapshot;
+
+use std::ffi::OsString;
+
+use clap::Parser;
+
+pub use exit::Exit;
+
+/// Runs the command line with these arguments, the first of which is the name of the program.
+///
+/// Prints to standard output and standard error, and listens to Ctrl-C while a scene runs.
+pub fn main_with_args(arguments: impl IntoIterator<Item = OsString>) -> Exit {
+    let parsed = match args::with_default_command(arguments) {
+        Ok(arguments) => args::Arguments::try_parse_from(arguments),
+        Err(failure) => return report(&report::Console::new(&args::OutputArgs::default()), &failure),
+    };
+    match parsed {
+        Ok(parsed) => {
+            let console = report::Console::new(&parsed.output);
+            commands::execute(&parsed.command, console).unwrap_or_else(|failure| report(&console, &failure))
+        }
+        Err(error) => {
+            // Help and version are no errors; a closed pipe is nobody's fault.
+            let _ = error.print();
+            if error.use_stderr() { Exit::Usage } else { Exit::Success }
+        }
+    }
+}
+
+fn report(console: &report::Console, failure: &exit::Failure) -> Exit {
+    match failure.label {
+        exit::Label::Error => console.error(&failure.message),
+        exit::Label::Own => console.raw(&failure.message),
+    }
+    failure.exit
+}

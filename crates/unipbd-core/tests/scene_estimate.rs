@@ -1,6 +1,7 @@
 //! Estimates against counts done by hand.
 
 use unipbd_core::scene::{BYTES_PER_PARTICLE, Block, Emitter, Gas, Liquid, Scene, SmokeSource, Substeps};
+use unipbd_core::step::{Demand, SubstepRule};
 
 fn water(min: [f64; 2], max: [f64; 2]) -> Scene {
     let block = Block { material: "water".into(), min, max, velocity: [0.0; 2], jitter: 0.0, temperature: 0.0 };
@@ -45,6 +46,19 @@ fn automatic_substeps_grow_with_the_root_of_depth() {
     assert_eq!(substeps(1.0), 5);
     assert_eq!(substeps(4.0), 9);
     assert_eq!(substeps(16.0), 18);
+}
+
+#[test]
+fn estimate_and_solver_choose_the_same_substeps() {
+    for depth in [1.0, 3.0, 10.0] {
+        for speed in [0.0, 5.0, 40.0] {
+            let mut scene = water([0.0, 0.0], [1.0, depth]);
+            scene.block[0].velocity = [0.0, speed];
+            let demand = Demand { speed, pressure: 9.81 * depth };
+            let choice = SubstepRule::new(&scene).choose(1.0 / 60.0, demand);
+            assert_eq!(scene.estimate().substeps, choice.substeps, "depth {depth}, speed {speed}");
+        }
+    }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! From messages back to frames.
 
 use prost::Message;
-use unipbd_core::bodies::{Body, BodyKind};
+use unipbd_core::bodies::{Body, BodyKind, CollisionFilter, Surface};
 use unipbd_core::math::Vector64;
 use unipbd_core::observe::{Event, Severity};
 use unipbd_core::phase::{MaterialIndex, Phase};
@@ -157,7 +157,18 @@ fn body(shape: &BodyShape, state: BodyState) -> Result<Body, String> {
         outline: points(&shape.outline_x, &shape.outline_y),
         radius: shape.radius,
         samples: points(&shape.sample_x, &shape.sample_y),
+        sample_area: shape.sample_area,
+        surface: Surface {
+            static_friction: shape.static_friction,
+            kinetic_friction: shape.kinetic_friction,
+            rolling_friction: shape.rolling_friction,
+            restitution: shape.restitution,
+        },
+        filter: CollisionFilter { layers: shape.layers, collides_with: shape.collides_with },
+        asleep: state.asleep,
         fluid_force: Vector64::new(state.fluid_force_x, state.fluid_force_y),
         fluid_torque: state.fluid_torque,
+        contact_force: Vector64::new(state.contact_force_x, state.contact_force_y),
+        contact_torque: state.contact_torque,
     })
 }

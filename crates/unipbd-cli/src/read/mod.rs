@@ -18,7 +18,7 @@ use unipbd_core::observe::Event;
 
 use crate::record::{Fields, Header, METADATA, SCENE_ATTACHMENT};
 use crate::snapshot::{Setting, Snapshot};
-use records::Records;
+pub(crate) use records::Records;
 
 pub use crate::record::schema::Diagnostics as DiagnosticsRecord;
 pub use error::LogError;

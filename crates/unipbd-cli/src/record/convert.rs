@@ -76,6 +76,10 @@ fn body_state(id: u32, body: &Body) -> BodyState {
         fluid_force_x: body.fluid_force.x,
         fluid_force_y: body.fluid_force.y,
         fluid_torque: body.fluid_torque,
+        contact_force_x: body.contact_force.x,
+        contact_force_y: body.contact_force.y,
+        contact_torque: body.contact_torque,
+        asleep: body.asleep,
     }
 }
 
@@ -93,6 +97,13 @@ fn body_shape(id: u32, body: &Body) -> BodyShape {
         outline_y,
         sample_x,
         sample_y,
+        sample_area: body.sample_area,
+        static_friction: body.surface.static_friction,
+        kinetic_friction: body.surface.kinetic_friction,
+        rolling_friction: body.surface.rolling_friction,
+        restitution: body.surface.restitution,
+        layers: body.filter.layers,
+        collides_with: body.filter.collides_with,
     }
 }
 

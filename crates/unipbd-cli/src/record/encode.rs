@@ -267,6 +267,9 @@ fn same_shapes(described: &[Body], bodies: &[Body]) -> bool {
             && a.radius == b.radius
             && a.outline == b.outline
             && a.samples == b.samples
+            && a.sample_area == b.sample_area
+            && a.surface == b.surface
+            && a.filter == b.filter
     };
     described.len() == bodies.len() && described.iter().zip(bodies).all(same)
 }

@@ -233,6 +233,18 @@ messages! {
         /// Mean torque of the fluid about the centre of mass over the frame [N m].
         #[prost(tag = "11", double)]
         fluid_torque: f64,
+        /// Mean force of contacts and joints over the frame, along x [N].
+        #[prost(tag = "12", double)]
+        contact_force_x: f64,
+        /// Mean force of contacts and joints over the frame, along y [N].
+        #[prost(tag = "13", double)]
+        contact_force_y: f64,
+        /// Mean torque of contacts and joints about the centre of mass over the frame [N m].
+        #[prost(tag = "14", double)]
+        contact_torque: f64,
+        /// Whether the body is held still until something wakes it.
+        #[prost(tag = "15", bool)]
+        asleep: bool,
     }
 
     /// What does not move of a rigid body, in its own coordinates.
@@ -264,6 +276,27 @@ messages! {
         /// Lattice samples, y [m].
         #[prost(tag = "9", double, repeated)]
         sample_y: Vec<f64>,
+        /// Area each sample stands for [m^2].
+        #[prost(tag = "10", double)]
+        sample_area: f64,
+        /// Coulomb coefficient below which a contact sticks.
+        #[prost(tag = "11", double)]
+        static_friction: f64,
+        /// Coulomb coefficient of a contact that slides.
+        #[prost(tag = "12", double)]
+        kinetic_friction: f64,
+        /// Rolling resistance of a disc.
+        #[prost(tag = "13", double)]
+        rolling_friction: f64,
+        /// Rebound speed over impact speed.
+        #[prost(tag = "14", double)]
+        restitution: f64,
+        /// Collision layers the body is in, one bit each.
+        #[prost(tag = "15", uint32)]
+        layers: u32,
+        /// Collision layers it collides with.
+        #[prost(tag = "16", uint32)]
+        collides_with: u32,
     }
 }
 
@@ -273,6 +306,7 @@ fn field(name: &str, kind: &str, repeated: bool, tag: &str, rust_type: &str) -> 
         "double" => Type::Double,
         "float" => Type::Float,
         "uint32" => Type::Uint32,
+        "bool" => Type::Bool,
         "string" => Type::String,
         "message" => Type::Message,
         other => unreachable!("field {name} has the kind {other}, which has no descriptor"),

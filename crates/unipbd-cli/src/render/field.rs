@@ -57,6 +57,24 @@ impl Field {
         }
     }
 
+    /// The same, but only where the way from the centre along `normal` is longer than `from` [pixels].
+    pub fn add_cut(&mut self, center: [f32; 2], reach: f32, values: [f32; 3], normal: [f32; 2], from: f32) {
+        let Some([columns, rows]) = window(center, reach, self.size) else { return };
+        self.touch(&columns, &rows);
+        for y in rows {
+            for x in columns.clone() {
+                let [dx, dy] = [x as f32 + 0.5 - center[0], y as f32 + 0.5 - center[1]];
+                let inside = 1.0 - (dx * dx + dy * dy) / (reach * reach);
+                if inside > 0.0 && dx * normal[0] + dy * normal[1] > from {
+                    let sums = &mut self.sums[y * self.size[0] + x];
+                    let weight = inside * inside;
+                    (0..3).for_each(|k| sums[k] += weight * values[k]);
+                    sums[3] += weight;
+                }
+            }
+        }
+    }
+
     /// Adds values with the weight `peak` exp(-r^2 / 2 sigma^2); `sigma` in pixels.
     pub fn add_gaussian(&mut self, center: [f32; 2], sigma: f32, peak: f32, values: [f32; 3]) {
         let Some([columns, rows]) = window(center, 3.0 * sigma, self.size) else { return };

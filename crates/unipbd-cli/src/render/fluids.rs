@@ -20,13 +20,13 @@ const SURFACE_EDGE: f32 = 0.70;
 /// Change of the weight per spacing at the edge.
 const SURFACE_SLOPE: f32 = 1.08;
 /// Weight from which on a surface shows no bright edge.
-const SURFACE_INSIDE: f32 = 1.45;
+const SURFACE_INSIDE: f32 = 1.12;
+
+/// How far beyond a wall's edge a surface is drawn [pixels]: the line hides as much.
+const WALL_COVER: f32 = 0.5;
 
 /// Standard deviation of a smoke blob in spacings.
 const SMOKE_SIGMA: f32 = 1.25;
-/// Optical depth of smoke with one marker per square spacing.
-const SMOKE_DEPTH: f32 = 1.3;
-
 /// Reach of a gas particle in spacings: wide, as gas has no surface.
 const GAS_REACH: f32 = 1.8;
 /// Weight from which on gas is as opaque as it gets; at rest density it is about 3.4.
@@ -108,16 +108,16 @@ impl Scope<'_> {
         field.lay_over(image, |mean, weight| (mean, VEIL_OPACITY * closedness(weight)));
     }
 
-    /// Soft blobs whose optical depths add up, so that many look like smoke and not like grains.
+    /// Soft blobs that add up, so that many look like smoke and not like grains.
     pub fn smoke(&self, image: &mut Image, field: &mut Field) {
         field.start(self.camera.size);
         let sigma = (SMOKE_SIGMA * self.spacing).max(0.7);
         let in_spacings = sigma / self.spacing.max(1e-6);
-        let peak = SMOKE_DEPTH / (std::f32::consts::TAU * in_spacings * in_spacings);
+        let peak = 1.0 / (std::f32::consts::TAU * in_spacings * in_spacings);
         for (row, center) in self.rows(|phase| phase == Phase::Smoke) {
             field.add_gaussian(center, sigma, peak, color::to_float(self.color(row)));
         }
-        field.lay_over(image, |mean, depth| (mean, 1.0 - (-depth).exp()));
+        field.lay_over(image, smoke_paint);
     }
 
     fn gather(
@@ -137,11 +137,15 @@ impl Scope<'_> {
         for (row, center) in self.rows(passes) {
             let values = values(row);
             field.add_compact(center, reach, values);
-            // Mirror images keep the body closed up to the wall, whose band hides them.
+            // Mirror images keep the body closed up to the wall, whose line hides their cut.
             let [x, y] = self.frame.positions[row].map(f64::from);
             for wall in self.walls {
-                wall.mirror(Vector64::new(x, y), metres, |mirrored| {
-                    field.add_compact(self.camera.pixel(mirrored), reach, values);
+                wall.mirror(Vector64::new(x, y), metres, |mirrored, normal| {
+                    let mirrored = self.camera.pixel(mirrored);
+                    let [dx, dy] = [center[0] - mirrored[0], center[1] - mirrored[1]];
+                    let normal = [normal.x as f32, -normal.y as f32];
+                    let height = 0.5 * (dx * normal[0] + dy * normal[1]);
+                    field.add_cut(mirrored, reach, values, normal, height - WALL_COVER);
                 });
             }
         }
@@ -151,6 +155,13 @@ impl Scope<'_> {
     fn edge_slope(&self) -> f32 {
         (self.spacing / SURFACE_SLOPE).max(1.0)
     }
+}
+
+/// Colour and opacity of smoke with `density` markers per square spacing. Scenes differ tenfold in
+/// it, so opacity approaches 1 more slowly than absorption would have it, and dense smoke is brighter.
+fn smoke_paint(mean: [f32; 3], density: f32) -> ([f32; 3], f32) {
+    let brightness = 0.84 + 0.16 * density / (density + 2.0);
+    (mean.map(|channel| channel * brightness), 1.0 - 1.0 / (1.0 + 1.5 * density))
 }
 
 /// What a blob is part of.

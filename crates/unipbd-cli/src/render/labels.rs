@@ -50,7 +50,7 @@ fn number(value: f64, span: f64) -> String {
     if span >= 1e5 || span < 1e-3 {
         return format!("{value:.1e}");
     }
-    let decimals = (2.0 - span.log10().floor()).clamp(0.0, 6.0) as usize;
+    let decimals = (3.0 - span.log10().floor()).clamp(0.0, 6.0) as usize;
     let text = format!("{value:.decimals$}");
     let text = if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { &text };
     if text == "-0" { "0".to_owned() } else { text.to_owned() }

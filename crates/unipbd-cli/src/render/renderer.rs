@@ -118,7 +118,7 @@ impl Renderer {
             bodies::draw(image, body, bodies::color(body, index, &self.theme), camera, spacing, scale);
         }
         for wall in walls {
-            wall.draw(image, camera, &self.theme, spacing, scale);
+            wall.draw(image, camera, &self.theme, scale);
         }
     }
 }

@@ -14,8 +14,8 @@ pub struct View {
 }
 
 impl View {
-    /// The region that holds the walls, and the particles and bodies of all given frames, with a
-    /// margin of two spacings.
+    /// The region that holds the walls, the bodies, and all but a few stray particles of all given
+    /// frames, with a margin of two spacings.
     pub fn fit<'a>(setting: &Setting, frames: impl IntoIterator<Item = &'a Snapshot>) -> View {
         let mut extent = Extent::default();
         for frame in frames {
@@ -63,8 +63,10 @@ impl Extent {
     }
 
     pub fn include_frame(&mut self, frame: &Snapshot, spacing: f64) {
-        for [x, y] in &frame.positions {
-            self.include(Vector64::new(f64::from(*x), f64::from(*y)));
+        let spans = [0, 1].map(|axis| span_of_most(frame.positions.iter().map(|position| position[axis])));
+        if let [Some([left, right]), Some([bottom, top])] = spans {
+            self.include(Vector64::new(left, bottom));
+            self.include(Vector64::new(right, top));
         }
         for body in &frame.bodies {
             let far = body.outline.iter().chain(&body.samples).map(|point| point.length());
@@ -106,6 +108,17 @@ impl Extent {
     }
 }
 
+/// The span of finite coordinates without the outermost 0.2 % at either end: a few drops that fly
+/// high must not shrink all the rest.
+fn span_of_most(coordinates: impl Iterator<Item = f32>) -> Option<[f64; 2]> {
+    let mut coordinates: Vec<f32> = coordinates.filter(|value| value.is_finite()).collect();
+    let strays = coordinates.len() / 500;
+    let last = coordinates.len().checked_sub(1)?;
+    let [low, high] =
+        [strays, last - strays].map(|index| f64::from(*coordinates.select_nth_unstable_by(index, f32::total_cmp).1));
+    Some([low, high])
+}
+
 /// From metres to pixels.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Camera {
@@ -141,6 +154,11 @@ impl Camera {
     /// Length of a distance [m] in pixels.
     pub fn length(&self, distance: f64) -> f32 {
         (distance * self.scale) as f32
+    }
+
+    /// Centre of the region [m].
+    pub fn center(&self) -> Vector64 {
+        (Vector64::from(self.view.min) + Vector64::from(self.view.max)) / 2.0
     }
 
     /// Diagonal of the region [m].

@@ -7,9 +7,13 @@ use super::image::Image;
 use super::theme::Theme;
 use super::view::Camera;
 
+/// Depth of the band on the solid side of a wall in a picture 960 pixels wide.
+const BAND: f32 = 9.0;
+
 /// A wall made ready to draw.
 pub(super) struct Wall {
     points: Vec<Vector64>,
+    pieces: Vec<Piece>,
     closed: bool,
     endless: bool,
 }
@@ -26,40 +30,53 @@ impl Wall {
             return None;
         }
         if outline.endless {
-            extend(&mut points, camera.diagonal());
+            center(&mut points, camera);
         }
-        Some(Wall { points, closed: outline.closed, endless: outline.endless })
+        Some(Wall { pieces: pieces(&points, outline.closed), points, closed: outline.closed, endless: outline.endless })
     }
 
     /// Draws a line with a lighter band on its solid side, which lies to the right of the way from
     /// point to point. The inside of a solid box and the far side of an endless wall are filled.
-    pub fn draw(&self, image: &mut Image, camera: &Camera, theme: &Theme, spacing: f32, scale: f32) {
+    pub fn draw(&self, image: &mut Image, camera: &Camera, theme: &Theme, scale: f32) {
         let points = &self.points;
         let solid_inside = self.closed && area(points) < 0.0;
-        // The band must hide what a surface draws beyond the wall.
-        let band_depth = f64::from((9.0 * scale).max(0.8 * spacing)) / camera.scale;
-        let depth = if self.endless { 4.0 * camera.diagonal() } else { band_depth };
+        let band_depth = f64::from(BAND * scale) / camera.scale;
+        let depth = if self.endless { 2.0 * camera.diagonal() } else { band_depth };
         let filled = if solid_inside { polygon(points, camera) } else { band(points, self.closed, depth, camera) };
         fill(image, filled, theme.wall_fill);
         stroke(image, line(points, self.closed, camera), theme.wall_line, 1.8 * scale);
     }
 
     /// The mirror images of a point in those straight pieces that have it before them, no farther
-    /// away than `reach` [m].
-    pub fn mirror(&self, point: Vector64, reach: f64, mut image: impl FnMut(Vector64)) {
-        let count = self.points.len();
-        let pieces = if self.closed { count } else { count - 1 };
-        for k in 0..pieces {
-            let [from, to] = [self.points[k], self.points[(k + 1) % count]];
-            let way = to - from;
-            let length = way.length();
-            let height = way.perp_dot(point - from) / length;
-            let along = way.dot(point - from) / length;
-            if height > 0.0 && height < reach && along > -reach && along < length + reach {
-                image(point + way.perp() * (-2.0 * height / length));
+    /// away than `reach` [m], each with the direction out of its wall.
+    pub fn mirror(&self, point: Vector64, reach: f64, mut image: impl FnMut(Vector64, Vector64)) {
+        for piece in &self.pieces {
+            let offset = point - piece.from;
+            let height = piece.way.perp_dot(offset);
+            let along = piece.way.dot(offset);
+            if height > 0.0 && height < reach && along > 0.0 && along < piece.length {
+                let normal = piece.way.perp();
+                image(point - normal * 2.0 * height, normal);
             }
         }
     }
+}
+
+/// A straight piece of a wall.
+struct Piece {
+    from: Vector64,
+    /// Direction of the way, of length 1.
+    way: Vector64,
+    length: f64,
+}
+
+fn pieces(points: &[Vector64], closed: bool) -> Vec<Piece> {
+    let count = if closed { points.len() } else { points.len() - 1 };
+    let piece = |k: usize| {
+        let way = points[(k + 1) % points.len()] - points[k];
+        Piece { from: points[k], way: way.normalize(), length: way.length() }
+    };
+    (0..count).map(piece).collect()
 }
 
 /// Twice the signed area: positive where the points run counter-clockwise.
@@ -68,12 +85,12 @@ fn area(points: &[Vector64]) -> f64 {
     points.iter().zip(next).map(|(a, b)| a.perp_dot(*b)).sum()
 }
 
-/// Moves the ends of a line outwards, out of the picture.
-fn extend(points: &mut [Vector64], diagonal: f64) {
-    let last = points.len() - 1;
-    let [start, end] = [(points[0] - points[1]).normalize(), (points[last] - points[last - 1]).normalize()];
-    points[0] += start * 4.0 * diagonal;
-    points[last] += end * 4.0 * diagonal;
+/// Cuts a line without end to the stretch that passes the picture, with some to spare.
+fn center(points: &mut Vec<Vector64>, camera: &Camera) {
+    let from = points[0];
+    let along = (points[points.len() - 1] - from).normalize();
+    let foot = from + along * (camera.center() - from).dot(along);
+    *points = vec![foot - along * 2.0 * camera.diagonal(), foot + along * 2.0 * camera.diagonal()];
 }
 
 /// The strip of the given depth [m] to the right of a line, with mitred corners.

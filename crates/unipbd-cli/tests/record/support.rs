@@ -5,7 +5,7 @@ use std::f64::consts::TAU;
 use unipbd_cli::record::Header;
 use unipbd_cli::snapshot::{Setting, Snapshot};
 use unipbd_core::Vector64;
-use unipbd_core::bodies::{Body, BodyKind};
+use unipbd_core::bodies::{Body, BodyKind, CollisionFilter, Surface};
 use unipbd_core::observe::{
     Diagnostics, Event, GroupDiagnostics, Material, MaterialDiagnostics, Severity, WallOutline,
 };
@@ -95,6 +95,12 @@ fn bodies(time: f64) -> Vec<Body> {
         samples,
         fluid_force: Vector64::new(0.5, 9.81),
         fluid_torque: -0.125,
+        sample_area: 0.01,
+        surface: Surface { rolling_friction: 0.01, restitution: 0.3, ..Surface::default() },
+        filter: CollisionFilter { layers: 2, collides_with: 5 },
+        asleep: time > 0.1,
+        contact_force: Vector64::new(-0.5, 3.0),
+        contact_torque: 0.75,
     };
     let disc = Body {
         name: "disc".to_owned(),

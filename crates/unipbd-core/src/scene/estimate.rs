@@ -10,6 +10,8 @@ pub const SECONDS_PER_PARTICLE_AND_SUBSTEP: f64 = 60e-9;
 /// Compression per p dt^2/(rho dx^2), times the relaxation: measured for the Wendland C2 kernel of
 /// radius 2.5 dx on columns 10 to 300 particles deep.
 const COMPRESSIBILITY: f64 = 0.335;
+/// Relaxation of liquids, omega.
+const RELAXATION: f64 = 0.5;
 /// Largest distance a particle may move in a substep, in spacings.
 const COURANT: f64 = 0.4;
 
@@ -145,15 +147,16 @@ fn changes(scene: &Scene) -> Vec<Change> {
 
 /// Substeps per frame for the speeds and depths at the start: the larger of the Courant condition,
 /// the trust region (compression below 0.2 within a substep) and the accuracy target, where
-/// C_max = (D/omega) P dt^2/dx^2 with P the largest pressure over density.
+/// C_max = (D/omega) P dt^2/dx^2 with P the largest pressure over density. The same rule as
+/// [`SubstepRule`](crate::step::SubstepRule), which a description must not depend on; a test holds them
+/// together.
 fn automatic_substeps(scene: &Scene) -> u32 {
     let frame = 1.0 / scene.fps;
     let pressure = pressure_over_density(scene);
-    let omega = scene.solver.relaxation.unwrap_or(if scene.gas.is_empty() { 0.5 } else { 0.4 });
     let courant = frame * largest_speed(scene) / (COURANT * scene.spacing);
     let trust = 2.0 * frame * pressure.sqrt() / scene.spacing;
     let accuracy =
-        frame / scene.spacing * (COMPRESSIBILITY / omega * pressure / scene.solver.target_compression).sqrt();
+        frame / scene.spacing * (COMPRESSIBILITY / RELAXATION * pressure / scene.solver.target_compression).sqrt();
     let count = courant.max(trust).max(accuracy).ceil().max(1.0);
     (count as u32).min(scene.solver.max_substeps)
 }

@@ -120,7 +120,7 @@ impl Walls {
         let (point, normal) = (Vector64::from(wall.point), Vector64::from(wall.normal).normalize());
         self.push_plane(point, normal, wall.friction);
         let along = normal.perp() * 1e3;
-        self.outlines.push(WallOutline { points: vec![point - along, point + along], closed: false, endless: true });
+        self.outlines.push(WallOutline { points: vec![point + along, point - along], closed: false, endless: true });
     }
 
     fn add_tank(&mut self, tank: &Tank) {
@@ -151,7 +151,9 @@ impl Walls {
     fn add_obstacle(&mut self, obstacle: &Obstacle) {
         let (min, max) = (Vector64::from(obstacle.min), Vector64::from(obstacle.max));
         self.rectangles.push(Rectangle { min: vector(min), max: vector(max), friction: real(obstacle.friction) });
-        self.outlines.push(WallOutline { points: ring(min, max).to_vec(), closed: true, endless: false });
+        let mut points = ring(min, max).to_vec();
+        points.reverse();
+        self.outlines.push(WallOutline { points, closed: true, endless: false });
     }
 
     fn push_plane(&mut self, point: Vector64, normal: Vector64, friction: f64) {

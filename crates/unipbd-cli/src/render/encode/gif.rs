@@ -94,14 +94,15 @@ impl GifWriter {
 
     fn encode(&self, effort: Effort) -> Result<Vec<u8>, RenderError> {
         let Some((width, height)) = self.size else { return Err(RenderError::NoFrames) };
-        let mut matcher = Matcher::new(self.histogram().palette(effort.colors));
+        let histogram = self.histogram();
+        let mut matcher = Matcher::new(histogram.palette(effort.colors));
         let size = [width as u16, height as u16];
         let mut encoded = || -> Result<Vec<u8>, gif::EncodingError> {
             // The last entry is never seen: it marks pixels that stay.
             let table = [&matcher.palette().concat()[..], &[0; 3]].concat();
             let mut encoder = Encoder::new(Vec::new(), size[0], size[1], &table)?;
             encoder.set_repeat(Repeat::Infinite)?;
-            let mut shown = Shown::default();
+            let mut shown = Shown { ground: histogram.most_frequent(), ..Shown::default() };
             let mut clock = Clock { fps: self.fps / effort.thinning as f64, frames: 0 };
             for frame in self.frames.iter().step_by(effort.thinning) {
                 let delay = clock.next_delay();
@@ -144,6 +145,9 @@ impl Clock {
 /// What a viewer shows after the frames so far.
 #[derive(Default)]
 struct Shown {
+    /// The colour between things: returning to it is always worth a pixel, or moving things would
+    /// leave trails.
+    ground: Rgb,
     /// Palette index and the true colour it stood for; empty before the first frame.
     indices: Vec<u8>,
     colors: Vec<Rgb>,
@@ -170,7 +174,8 @@ impl Shown {
         let mut pixels = vec![transparent; self.indices.len()];
         let mut rectangle = Rectangle::default();
         for (at, color) in colors(frame).enumerate() {
-            let index = if distance(color, self.colors[at]) > limit { matcher.index(color) } else { self.indices[at] };
+            let changed = distance(color, self.colors[at]) > limit || color == self.ground;
+            let index = if changed { matcher.index(color) } else { self.indices[at] };
             if index != self.indices[at] {
                 (self.indices[at], self.colors[at], pixels[at]) = (index, color, index);
                 rectangle.include(at % usize::from(width), at / usize::from(width));

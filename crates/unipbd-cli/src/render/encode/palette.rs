@@ -45,6 +45,12 @@ impl Histogram {
         boxes.iter().filter(|colors| !colors.members.is_empty()).map(ColorBox::color).collect()
     }
 
+    /// The mean of the fullest bin.
+    pub fn most_frequent(&self) -> Rgb {
+        let fullest = (0..BINS).max_by_key(|bin| self.counts[*bin]).unwrap_or(0);
+        self.weighted(fullest).color.map(|channel| channel.round() as u8)
+    }
+
     fn weighted(&self, bin: usize) -> Weighted {
         let count = self.counts[bin] as f64;
         Weighted { color: self.sums[bin].map(|sum| sum as f64 / count), count }
@@ -147,7 +153,8 @@ mod tests {
         let mut matcher = Matcher::new(histogram.palette(16));
         assert_eq!(matcher.palette().len(), 16);
         for grey in 0..=255u8 {
-            let entry = matcher.palette()[usize::from(matcher.index([grey; 3]))];
+            let index = usize::from(matcher.index([grey; 3]));
+            let entry = matcher.palette()[index];
             assert!(entry[0].abs_diff(grey) <= 13, "{grey} became {}", entry[0]);
         }
     }

@@ -1,0 +1,119 @@
+//! The arguments of the command line.
+
+mod dispatch;
+mod render;
+mod run;
+mod stop_on;
+
+use std::path::PathBuf;
+
+use clap::builder::styling::{AnsiColor, Styles};
+use clap::{Args, Parser, Subcommand};
+
+pub use dispatch::{is_log, log_is_no_scene, with_default_command};
+pub use render::RenderArgs;
+pub use run::{LogArgs, RunArgs, SceneChanges};
+pub use stop_on::StopCondition;
+
+const STYLES: Styles = Styles::styled()
+    .header(AnsiColor::Green.on_default().bold())
+    .usage(AnsiColor::Green.on_default().bold())
+    .literal(AnsiColor::Cyan.on_default().bold())
+    .placeholder(AnsiColor::Cyan.on_default());
+
+const AFTER_HELP: &str = "\
+Exit codes:
+    0  done
+    1  a file could not be read or written, or does not exist
+    2  wrong arguments, or an output that exists and --force was not given
+    3  the scene file has errors
+    4  the simulation diverged (the log up to there is kept)
+    5  a --stop-on condition was met
+  130  interrupted by Ctrl-C (the frame was finished and the log closed; a second Ctrl-C quits at once)
+
+Environment:
+  UNIPBD_THREADS  number of threads where --threads is not given
+  NO_COLOR        no colours in messages
+
+Examples:
+  unipbd scenes/open_gas.toml                      run a scene, record open_gas.mcap
+  unipbd check my_scene.toml                       find mistakes, estimate the cost
+  unipbd run my_scene.toml --set spacing=0.05      run with another particle distance [m]
+  unipbd render open_gas.mcap -o plume.gif         make an animation of a log
+  unipbd run my_scene.toml --json --no-record | jq .density_error_max";
+
+/// Run, inspect and draw 2D particle scenes: liquids, gas, smoke and rigid bodies.
+///
+/// `unipbd SCENE.toml` is short for `unipbd run SCENE.toml`. Data goes to standard output, messages
+/// and progress to standard error.
+#[derive(Debug, Parser)]
+#[command(name = "unipbd", version, styles = STYLES, after_help = AFTER_HELP, max_term_width = 110)]
+#[command(arg_required_else_help = true, infer_subcommands = false)]
+pub struct Arguments {
+    /// How much is printed, and in which form.
+    #[command(flatten)]
+    pub output: OutputArgs,
+    /// What to do.
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+/// How much is printed, and in which form.
+#[derive(Clone, Debug, Default, Args)]
+#[command(next_help_heading = "Output")]
+pub struct OutputArgs {
+    /// Print errors only: no progress, no warnings, no summary (--json lines stay)
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    pub quiet: bool,
+    /// Print more: settings at the start, the wall-clock time of each stage at the end
+    #[arg(short, long, global = true)]
+    pub verbose: bool,
+    /// Print data as JSON, one object a line, on standard output
+    #[arg(long, global = true)]
+    pub json: bool,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Run a scene and record it to a log
+    Run(RunArgs),
+    /// Check a scene for mistakes and estimate its cost
+    #[command(
+        after_help = "Examples:\n  unipbd check scenes/dam_break.toml\n  unipbd check my_scene.toml --set spacing=0.01 --json"
+    )]
+    Check(CheckArgs),
+    /// Summarise a scene or a log
+    #[command(after_help = "Examples:\n  unipbd info scenes/open_gas.toml\n  unipbd info open_gas.mcap --json")]
+    Info(InfoArgs),
+    /// Draw a log (or a scene, which is run first) as PNG frames, GIF or MP4
+    Render(RenderArgs),
+    /// Print the JSON schema of scene files, for completion and checking in editors
+    #[command(after_help = "Example:\n  unipbd schema > scene.schema.json")]
+    Schema,
+}
+
+/// Arguments of `check`.
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// The scene file (.toml)
+    #[arg(value_name = "SCENE")]
+    pub scene: PathBuf,
+    /// Changes to the scene.
+    #[command(flatten)]
+    pub changes: SceneChanges,
+    /// Threads of the run that is estimated [default: all]
+    #[arg(long, value_name = "N", env = "UNIPBD_THREADS", hide_env_values = true, value_parser = run::thread_count)]
+    pub threads: Option<usize>,
+}
+
+/// Arguments of `info`.
+#[derive(Debug, Args)]
+pub struct InfoArgs {
+    /// A scene (.toml) or a log (.mcap)
+    #[arg(value_name = "SCENE|LOG")]
+    pub path: PathBuf,
+    /// Changes to the scene.
+    #[command(flatten)]
+    pub changes: SceneChanges,
+}

@@ -1,0 +1,106 @@
+//! `check`: is the scene sound, and what will it cost?
+
+use serde_json::{Value, json};
+use unipbd_core::BuildOptions;
+use unipbd_core::scene::{Scene, Substeps};
+
+use super::estimate::{Cost, emitted, particles};
+use super::scene::{build, load};
+use crate::args::CheckArgs;
+use crate::exit::{Exit, Failure};
+use crate::report::format::{bytes, count, duration, percent, plural};
+use crate::report::{Console, Form};
+use crate::scene_file::{self, Diagnostic, Origin};
+use crate::simulation::title;
+
+pub(super) fn check(arguments: &CheckArgs, console: Console) -> Result<Exit, Failure> {
+    if console.form == Form::Json
+        && let Err(error) = scene_file::load(&arguments.scene, &arguments.changes.all()?)
+        && !error.problems().is_empty()
+    {
+        console.object(&json!({
+            "type": "check",
+            "valid": false,
+            "problems": error.problems().iter().map(problem).collect::<Vec<_>>(),
+        }))?;
+        return Ok(Exit::InvalidScene);
+    }
+    let loaded = load(&arguments.scene, &arguments.changes)?;
+    let mut simulation = build(&loaded, BuildOptions { threads: arguments.threads, seed: None })?;
+    let cost = Cost::of(&loaded.scene, &mut simulation);
+    match console.form {
+        Form::Json => console.object(&object(&title(&loaded.scene, &loaded.path), &loaded.scene, &cost))?,
+        Form::Text => {
+            console.line(format_args!("{}: no mistakes found", loaded.path.display()))?;
+            console.line(text(&loaded.scene, simulation.frames, &cost))?;
+        }
+    }
+    for event in simulation.solver.take_events() {
+        console.note(&event.message);
+    }
+    match cost.first_frame {
+        Ok(_) => Ok(Exit::Success),
+        Err(error) => Err(Failure::new(Exit::Diverged, format!("the first frame fails: {error}"))),
+    }
+}
+
+fn text(scene: &Scene, frames: u64, cost: &Cost) -> String {
+    let mut lines = vec![
+        format!("  duration       {} s, {} of 1/{} s", scene.duration, plural(frames, "frame"), scene.fps),
+        format!("  particles      {} at the start", count(cost.start.particles())),
+        format!(
+            "  density error  {} mean, {} worst at the start",
+            percent(cost.start.density_error_mean),
+            percent(cost.start.density_error_max)
+        ),
+    ];
+    if !scene.emitter.is_empty() {
+        lines[1] += &format!(", up to {} emitted, at most {} at once", count(emitted(scene)), count(cost.peak));
+    }
+    if let Ok(substeps) = cost.first_frame {
+        let choice = match scene.solver.substeps {
+            Substeps::Auto => format!(" in the first frame (auto, at most {})", scene.solver.max_substeps),
+            Substeps::Fixed(_) => " a frame".into(),
+        };
+        lines.push(format!("  substeps       {substeps}{choice}"));
+    }
+    lines.push(format!(
+        "  memory         {} at the start, about {} at the peak",
+        bytes(cost.memory_at_start),
+        bytes(cost.memory_at_peak)
+    ));
+    lines.push(format!("  cost           roughly {} of wall-clock time", duration(cost.wall_time)));
+    lines.join("\n")
+}
+
+fn object(name: &str, scene: &Scene, cost: &Cost) -> Value {
+    json!({
+        "type": "check",
+        "valid": true,
+        "scene": name,
+        "duration": scene.duration,
+        "fps": scene.fps,
+        "particles": particles(scene),
+        "density_error_mean": cost.start.density_error_mean,
+        "density_error_max": cost.start.density_error_max,
+        "substeps": cost.first_frame.as_ref().ok(),
+        "memory_bytes": { "at_start": cost.memory_at_start, "peak": cost.memory_at_peak },
+        "wall_time": cost.wall_time.as_secs_f64(),
+    })
+}
+
+fn problem(problem: &Diagnostic) -> Value {
+    let (file, change) = match &problem.origin {
+        Origin::File(name) => (Some(name), None),
+        Origin::Override(text) => (None, Some(text)),
+    };
+    json!({
+        "file": file,
+        "override": change,
+        "line": problem.line,
+        "column": problem.column,
+        "key": problem.key,
+        "message": problem.message,
+        "hint": problem.hint,
+    })
+}

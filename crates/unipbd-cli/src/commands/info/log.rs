@@ -1,0 +1,222 @@
+//! What is in a log.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::path::Path;
+
+use mcap::records::Record;
+use serde_json::{Value, json};
+
+use crate::exit::{Exit, Failure};
+use crate::read::{DiagnosticsRecord, Log, LogError, Records};
+use crate::report::format::{bytes, count, percent, plural};
+use crate::report::{Console, Form};
+
+/// Messages of a topic.
+#[derive(Clone, Copy, Debug, Default)]
+struct Traffic {
+    messages: u64,
+    bytes: u64,
+}
+
+/// What only a walk through the whole log tells.
+#[derive(Debug, Default)]
+struct Content {
+    frames: u64,
+    start: f64,
+    end: f64,
+    particles: u64,
+    events: u64,
+    last: Option<DiagnosticsRecord>,
+    truncated: bool,
+    topics: BTreeMap<String, Traffic>,
+}
+
+pub(super) fn info(path: &Path, console: Console) -> Result<Exit, Failure> {
+    let log = Log::open(path)?;
+    let mut content = read_frames(&log)?;
+    content.topics = read_topics(path)?;
+    let size = path.metadata().map_or(0, |metadata| metadata.len());
+    match console.form {
+        Form::Json => console.object(&object(&log, &content, size))?,
+        Form::Text => console.line(text(&log, &content, size))?,
+    }
+    Ok(Exit::Success)
+}
+
+fn read_frames(log: &Log) -> Result<Content, LogError> {
+    let mut content = Content::default();
+    let mut frames = log.frames()?;
+    for frame in frames.by_ref() {
+        let frame = frame?;
+        if content.frames == 0 {
+            content.start = frame.snapshot.time;
+        }
+        content.frames += 1;
+        content.end = frame.snapshot.time;
+        content.particles = frame.snapshot.positions.len() as u64;
+        content.events += frame.events.len() as u64;
+        content.last = frame.diagnostics.or(content.last.take());
+    }
+    content.truncated = frames.truncated();
+    Ok(content)
+}
+
+fn read_topics(path: &Path) -> Result<BTreeMap<String, Traffic>, LogError> {
+    let file = File::open(path).map_err(|cause| LogError::Io(path.to_owned(), cause))?;
+    let mut records = Records::new(file, path)?;
+    let mut names = BTreeMap::new();
+    let mut topics: BTreeMap<String, Traffic> = BTreeMap::new();
+    while let Some(record) = records.next()? {
+        match record {
+            Record::Channel(channel) => {
+                names.insert(channel.id, channel.topic);
+            }
+            Record::Message { header, data } => {
+                if let Some(name) = names.get(&header.channel_id) {
+                    let traffic = topics.entry(name.clone()).or_default();
+                    traffic.messages += 1;
+                    traffic.bytes += data.len() as u64;
+                }
+            }
+            _ => {}
+        }
+    }
+    Ok(topics)
+}
+
+fn text(log: &Log, content: &Content, size: u64) -> String {
+    let header = log.header();
+    let setting = log.setting();
+    let mut lines = vec![if setting.name.is_empty() { log.path().display().to_string() } else { setting.name.clone() }];
+    lines.push(format!(
+        "  duration    {} s, {} of 1/{} s",
+        (1e6 * (content.end - content.start)).round() / 1e6,
+        plural(content.frames, "frame"),
+        header.fps
+    ));
+    if content.truncated {
+        lines.push("              cut off: the run was killed, or is still going".into());
+    }
+    lines.push(format!("  size        {}{}", bytes(size), per_particle(content, size)));
+    lines.push(format!("  spacing     {} m, seed {}", setting.spacing, header.seed));
+    lines.push(format!("  materials   {}", materials(log)));
+    let fields = log.fields().to_string();
+    lines.push(format!("  fields      {}", if fields.is_empty() { "none besides positions" } else { &fields }));
+    if !header.overrides.is_empty() {
+        lines.push(format!("  changes     {}", header.overrides.join(", ")));
+    }
+    lines.push(format!("  written by  unipbd {}, scene sha256 {}", log.version(), header.scene_sha256()));
+    lines.push("  topics".into());
+    for (name, traffic) in &content.topics {
+        let messages = plural(traffic.messages, "message");
+        lines.push(format!("    {name:<20} {messages:>16}  {:>8}", bytes(traffic.bytes)));
+    }
+    if let Some(last) = &content.last {
+        lines.extend(last_lines(last, content));
+    }
+    lines.join("\n")
+}
+
+fn materials(log: &Log) -> String {
+    let named = log.setting().materials.iter();
+    named.map(|material| format!("{} ({})", material.name, material.phase.name())).collect::<Vec<_>>().join(", ")
+}
+
+fn per_particle(content: &Content, size: u64) -> String {
+    let points = content.topics.get("/particles").map_or(0, |traffic| traffic.bytes / 16);
+    if points == 0 { String::new() } else { format!(", {:.1} B per particle and frame", size as f64 / points as f64) }
+}
+
+fn last_lines(last: &DiagnosticsRecord, content: &Content) -> Vec<String> {
+    let counts = [
+        (last.count_liquid, "liquid"),
+        (last.count_gas, "gas"),
+        (last.count_smoke, "smoke"),
+        (last.count_rigid, "rigid"),
+        (last.count_solid, "solid"),
+    ];
+    let held: Vec<String> = counts
+        .into_iter()
+        .filter(|(number, _)| *number > 0)
+        .map(|(number, name)| format!("{} {name}", count(u64::from(number))))
+        .collect();
+    let mut lines = vec![
+        format!("  at the end ({:.3} s)", last.time),
+        format!("    particles      {} ({})", count(content.particles), held.join(", ")),
+        format!(
+            "    density error  {} mean, {} worst",
+            percent(last.density_error_mean),
+            percent(last.density_error_max)
+        ),
+        format!("    substeps       {} a frame, {} in all", last.substeps, count(u64::from(last.step))),
+        format!("    energy         {:.4e} J kinetic, {:.4e} J potential", last.kinetic_energy, last.potential_energy),
+        format!("    largest speed  {:.3} m/s", last.speed_max),
+    ];
+    if !last.state_hash.is_empty() {
+        lines.push(format!("    state hash     {}", last.state_hash));
+    }
+    lines
+}
+
+fn object(log: &Log, content: &Content, size: u64) -> Value {
+    let (header, setting) = (log.header(), log.setting());
+    let materials = setting.materials.iter().map(|material| {
+        json!({
+            "name": material.name,
+            "phase": material.phase.name(),
+            "density": material.density,
+            "color": material.color,
+        })
+    });
+    let topics = content
+        .topics
+        .iter()
+        .map(|(name, traffic)| (name.clone(), json!({ "messages": traffic.messages, "bytes": traffic.bytes })));
+    json!({
+        "type": "log",
+        "path": log.path().display().to_string(),
+        "name": setting.name,
+        "version": log.version(),
+        "sha256": header.scene_sha256(),
+        "overrides": header.overrides,
+        "seed": header.seed,
+        "fps": header.fps,
+        "spacing": setting.spacing,
+        "gravity": header.gravity,
+        "fields": log.fields().to_string(),
+        "bytes": size,
+        "truncated": content.truncated,
+        "frames": content.frames,
+        "duration": content.end - content.start,
+        "particles": content.particles,
+        "events": content.events,
+        "materials": materials.collect::<Vec<_>>(),
+        "topics": topics.collect::<serde_json::Map<_, _>>(),
+        "last": content.last.as_ref().map(last_object),
+    })
+}
+
+fn last_object(last: &DiagnosticsRecord) -> Value {
+    json!({
+        "time": last.time,
+        "frame": last.frame,
+        "step": last.step,
+        "substeps": last.substeps,
+        "counts": {
+            "liquid": last.count_liquid,
+            "gas": last.count_gas,
+            "smoke": last.count_smoke,
+            "rigid": last.count_rigid,
+            "solid": last.count_solid,
+        },
+        "density_error_mean": last.density_error_mean,
+        "density_error_max": last.density_error_max,
+        "density_error_min": last.density_error_min,
+        "pressure_max": last.pressure_max,
+        "kinetic_energy": last.kinetic_energy,
+        "potential_energy": last.potential_energy,
+        "speed_max": last.speed_max,
+        "state_hash": last.state_hash,
+    })
+}

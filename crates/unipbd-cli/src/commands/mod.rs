@@ -1,0 +1,25 @@
+//! The commands, one file each.
+
+mod check;
+mod estimate;
+mod info;
+mod recording;
+mod render;
+mod run;
+mod scene;
+mod schema;
+
+use crate::args::Command;
+use crate::exit::{Exit, Failure};
+use crate::report::Console;
+
+/// Does what the arguments ask for.
+pub fn execute(command: &Command, console: Console) -> Result<Exit, Failure> {
+    match command {
+        Command::Run(arguments) => run::run(arguments, console),
+        Command::Check(arguments) => check::check(arguments, console),
+        Command::Info(arguments) => info::info(arguments, console),
+        Command::Render(arguments) => render::render(arguments, console),
+        Command::Schema => schema::schema(console),
+    }
+}

@@ -1,0 +1,217 @@
+//! `render`: pictures of a log, or of a scene that is run for them.
+
+use unipbd_core::BuildOptions;
+
+use super::scene::{build, load};
+use crate::args::{RenderArgs, is_log};
+use crate::exit::{Exit, Failure};
+use crate::interrupt;
+use crate::read::{Log, LogError};
+use crate::record::Fields;
+use crate::render::{
+    self, ColorBy, Existing, Output, Range, RenderError, RenderJob, RenderOptions, Rendered, TimeStamp,
+};
+use crate::report::format::plural;
+use crate::report::{Console, Counter, Form};
+use crate::scene_file::LoadedScene;
+use crate::simulation::Simulation;
+use crate::snapshot::{Setting, Snapshot};
+
+pub(super) fn render(arguments: &RenderArgs, console: Console) -> Result<Exit, Failure> {
+    let mut job = job(arguments);
+    refuse_existing(&job)?;
+    let source = Source::open(arguments)?;
+    interrupt::listen();
+    let setting = source.setting()?;
+    if is_film(&job)? && render::Survey::is_needed(&setting, &job.options) {
+        job.options = survey(&source, &setting, &job, console)?;
+    }
+    let counter = Counter::new(console, "drawing", source.frame_count());
+    let rendered = render::run(source.frames()?, &setting, &job, |count| counter.show(count));
+    counter.finish();
+    announce(&rendered.map_err(|error| source.explain(error))?, console)?;
+    Ok(Exit::Success)
+}
+
+fn job(arguments: &RenderArgs) -> RenderJob {
+    let (frames, look) = (&arguments.frames, &arguments.look);
+    RenderJob {
+        existing: if arguments.force { Existing::Replace } else { Existing::Keep },
+        selection: render::Selection { time: frames.time, from: frames.from, to: frames.to, every: frames.every },
+        speed: frames.speed,
+        options: RenderOptions {
+            width: look.width,
+            color_by: look.color,
+            style: look.style,
+            background: look.background,
+            range: look.range.unwrap_or(Range::Automatic),
+            view: look.view,
+            time_stamp: if look.no_time_stamp { TimeStamp::Hidden } else { TimeStamp::Shown },
+        },
+        ffmpeg: arguments.ffmpeg.clone(),
+        ..RenderJob::new(&arguments.output)
+    }
+}
+
+/// Says so before a scene is run for an output that must not be replaced.
+fn refuse_existing(job: &RenderJob) -> Result<(), Failure> {
+    match render::plan_output(&job.output)? {
+        Output::Picture(path) | Output::Gif(path) | Output::Mp4(path)
+            if job.existing == Existing::Keep && path.symlink_metadata().is_ok() =>
+        {
+            Err(RenderError::Exists(path).into())
+        }
+        Output::Pictures(_) if job.selection.time.is_some() => {
+            Err(Failure::usage("--time asks for one picture: give a single name, such as picture.png"))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Whether more than one picture is drawn, which view and colours should outlast.
+fn is_film(job: &RenderJob) -> Result<bool, Failure> {
+    Ok(!matches!(render::plan_output(&job.output)?, Output::Picture(_)))
+}
+
+/// Goes through all frames once to find a view and colours that fit them all. A scene is run for
+/// it, which costs its time again but no memory.
+fn survey(source: &Source, setting: &Setting, job: &RenderJob, console: Console) -> Result<RenderOptions, Failure> {
+    let counter = Counter::new(console, "looking for view and colours", source.frame_count());
+    let mut survey = render::Survey::new(setting, job.options.clone());
+    for (index, frame) in source.frames()?.enumerate() {
+        survey.include(&frame?).map_err(|error| source.explain(error))?;
+        counter.show(index as u64 + 1);
+    }
+    counter.finish();
+    Ok(survey.finish())
+}
+
+fn announce(rendered: &Rendered, console: Console) -> Result<(), Failure> {
+    let [width, height] = rendered.size;
+    match console.form {
+        Form::Json => console.object(&serde_json::json!({
+            "type": "rendered",
+            "path": rendered.path.display().to_string(),
+            "frames": rendered.frames,
+            "size": rendered.size,
+            "fps": rendered.fps,
+        }))?,
+        Form::Text => console.note(format_args!(
+            "{}: {} of {width} x {height} pixels",
+            rendered.path.display(),
+            plural(rendered.frames, "picture")
+        )),
+    }
+    Ok(())
+}
+
+/// Where frames come from.
+enum Source {
+    Log(Log),
+    Scene { loaded: Box<LoadedScene>, options: BuildOptions, fields: Fields },
+}
+
+impl Source {
+    fn open(arguments: &RenderArgs) -> Result<Self, Failure> {
+        if is_log(&arguments.source) {
+            arguments.changes.refuse_for_log()?;
+            return Ok(Source::Log(Log::open(&arguments.source)?));
+        }
+        let loaded = load(&arguments.source, &arguments.changes)?;
+        let options = BuildOptions { threads: arguments.threads, seed: None };
+        Ok(Source::Scene { loaded: Box::new(loaded), options, fields: fields_for(arguments.look.color) })
+    }
+
+    fn setting(&self) -> Result<Setting, Failure> {
+        match self {
+            Source::Log(log) => Ok(log.setting().clone()),
+            Source::Scene { loaded, options, .. } => {
+                Ok(build(loaded, options.clone())?.setting(&loaded.scene, &loaded.path))
+            }
+        }
+    }
+
+    fn frame_count(&self) -> Option<u64> {
+        match self {
+            Source::Log(log) => log.totals().map(|totals| totals.frames),
+            Source::Scene { loaded, .. } => Some(crate::simulation::frame_count(&loaded.scene) + 1),
+        }
+    }
+
+    fn frames(&self) -> Result<Box<dyn Iterator<Item = Result<Snapshot, Failure>>>, Failure> {
+        let frames: Box<dyn Iterator<Item = Result<Snapshot, Failure>>> = match self {
+            Source::Log(log) => {
+                Box::new(log.frames()?.map(|frame| frame.map(|frame| frame.snapshot).map_err(Failure::from)))
+            }
+            Source::Scene { loaded, options, fields } => {
+                Box::new(SceneFrames { simulation: build(loaded, options.clone())?, fields: *fields, at_start: true })
+            }
+        };
+        Ok(Box::new(frames.map(|frame| if interrupt::requested() { Err(interrupted()) } else { frame })))
+    }
+
+    /// A scene has every column that its materials have, so no flag helps.
+    fn explain(&self, error: RenderError) -> Failure {
+        match (self, &error) {
+            (Source::Scene { .. }, RenderError::MissingColumn(by)) => {
+                Failure::usage(format!("no material of the scene has a {}", by.name()))
+            }
+            _ => error.into(),
+        }
+    }
+}
+
+/// The frames of a scene, from its start.
+struct SceneFrames {
+    simulation: Simulation,
+    fields: Fields,
+    at_start: bool,
+}
+
+impl Iterator for SceneFrames {
+    type Item = Result<Snapshot, Failure>;
+
+    fn next(&mut self) -> Option<Self::Item> {
+        if !std::mem::take(&mut self.at_start)
+            && let Err(error) = self.simulation.next_frame()?
+        {
+            return Some(Err(Failure::new(Exit::Diverged, error.to_string())));
+        }
+        Some(Ok(self.simulation.snapshot(self.fields)))
+    }
+}
+
+fn fields_for(color: ColorBy) -> Fields {
+    let none = Fields::default();
+    match color {
+        ColorBy::Material => none,
+        ColorBy::Speed => Fields { velocity: true, ..none },
+        ColorBy::Density => Fields { density: true, ..none },
+        ColorBy::Temperature => Fields { temperature: true, ..none },
+    }
+}
+
+fn interrupted() -> Failure {
+    Failure::new(Exit::Interrupted, "interrupted")
+}
+
+impl From<LogError> for Failure {
+    fn from(error: LogError) -> Self {
+        Failure::io(error.to_string())
+    }
+}
+
+impl From<RenderError> for Failure {
+    fn from(error: RenderError) -> Self {
+        match error {
+            RenderError::Frame(source) => match source.downcast::<Failure>() {
+                Ok(failure) => *failure,
+                Err(other) => Failure::io(other.to_string()),
+            },
+            RenderError::NoFfmpeg(_) | RenderError::Ffmpeg(_) | RenderError::Write { .. } => {
+                Failure::io(error.to_string())
+            }
+            other => Failure::usage(other.to_string()),
+        }
+    }
+}

@@ -1,0 +1,14 @@
+//! What the user sees: messages, progress, JSON lines, summaries.
+
+mod console;
+mod counter;
+pub mod format;
+pub mod json;
+mod progress;
+mod statistics;
+pub mod summary;
+
+pub use console::{Console, Form, Verbosity};
+pub use counter::Counter;
+pub use progress::Progress;
+pub use statistics::{Outcome, Statistics};

@@ -1,0 +1,160 @@
+//! Progress of a run on standard error: a bar on a terminal, plain lines elsewhere.
+
+use std::io::IsTerminal;
+use std::time::{Duration, Instant};
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use unipbd_core::observe::{Diagnostics, Event, Severity};
+
+use super::format::{count, duration, percent};
+use super::{Console, Form, Verbosity};
+
+/// Longest wall-clock time without a plain line.
+const SILENCE: Duration = Duration::from_secs(5);
+/// Plain lines of a run that is quick.
+const LINES: u64 = 10;
+
+enum Display {
+    Nothing,
+    Bar(ProgressBar),
+    Lines { next_frame: u64, last: Instant },
+}
+
+/// Shows how far a run has come.
+pub struct Progress {
+    console: Console,
+    display: Display,
+    frames: u64,
+    duration: f64,
+    speed: Speed,
+}
+
+impl Progress {
+    /// Progress of a run of `frames` frames and `duration` simulated seconds.
+    pub fn new(console: Console, frames: u64, duration: f64) -> Self {
+        Progress { console, display: choose_display(console, frames), frames, duration, speed: Speed::start() }
+    }
+
+    /// Shows a finished frame.
+    pub fn frame(&mut self, diagnostics: &Diagnostics) {
+        self.speed.add(diagnostics.time);
+        let text = self.text(diagnostics);
+        match &mut self.display {
+            Display::Nothing => {}
+            Display::Bar(bar) => {
+                bar.set_position(diagnostics.frame);
+                bar.set_message(text);
+            }
+            Display::Lines { next_frame, last } => {
+                if diagnostics.frame < *next_frame && last.elapsed() < SILENCE {
+                    return;
+                }
+                let tenths = diagnostics.frame * LINES / self.frames.max(1);
+                *next_frame = ((tenths + 1) * self.frames).div_ceil(LINES);
+                *last = Instant::now();
+                let share = 100 * diagnostics.frame / self.frames.max(1);
+                self.console.note(format_args!("{share:3} %  {text}"));
+            }
+        }
+    }
+
+    /// Shows events without disturbing the bar.
+    pub fn events(&self, events: &[Event]) {
+        for event in events {
+            self.apart(|console| match event.severity {
+                Severity::Warning => console.warning(format_args!("{} (at {:.3} s)", event.message, event.time)),
+                Severity::Info => console.detail(format_args!("{:.3} s: {}", event.time, event.message)),
+            });
+        }
+    }
+
+    /// Removes the bar.
+    pub fn finish(&self) {
+        if let Display::Bar(bar) = &self.display {
+            bar.finish_and_clear();
+        }
+    }
+
+    fn apart(&self, print: impl FnOnce(&Console)) {
+        match &self.display {
+            Display::Bar(bar) => bar.suspend(|| print(&self.console)),
+            _ => print(&self.console),
+        }
+    }
+
+    fn text(&self, diagnostics: &Diagnostics) -> String {
+        let speed = self.speed.simulated_per_wall;
+        let left = (self.duration - diagnostics.time).max(0.0);
+        let eta = if speed > 0.0 { remaining(left / speed) } else { "?".into() };
+        format!(
+            "{:.2}/{:.2} s  frame {}/{}  {}x  ETA {eta}  {} particles  density error {} mean, {} max",
+            diagnostics.time,
+            self.duration,
+            diagnostics.frame,
+            self.frames,
+            significant(speed),
+            count(diagnostics.particles()),
+            percent(diagnostics.density_error_mean),
+            percent(diagnostics.density_error_max),
+        )
+    }
+}
+
+fn choose_display(console: Console, frames: u64) -> Display {
+    let data_shares_terminal = console.form == Form::Json && std::io::stdout().is_terminal();
+    if console.verbosity == Verbosity::Quiet {
+        Display::Nothing
+    } else if std::io::stderr().is_terminal() && !data_shares_terminal {
+        let bar = ProgressBar::with_draw_target(Some(frames), ProgressDrawTarget::stderr_with_hz(10));
+        let style = ProgressStyle::with_template("[{bar:20}] {wide_msg}").expect("the template is well-formed");
+        bar.set_style(style.progress_chars("=> "));
+        Display::Bar(bar)
+    } else {
+        Display::Lines { next_frame: frames.div_ceil(LINES), last: Instant::now() }
+    }
+}
+
+/// Simulated seconds per second of wall-clock time, smoothed over the last few seconds.
+struct Speed {
+    simulated_per_wall: f64,
+    last: Instant,
+    last_time: f64,
+}
+
+impl Speed {
+    fn start() -> Self {
+        Speed { simulated_per_wall: 0.0, last: Instant::now(), last_time: 0.0 }
+    }
+
+    fn add(&mut self, time: f64) {
+        const MEMORY: f64 = 3.0; // [s] of wall-clock time
+        let wall = self.last.elapsed().as_secs_f64();
+        if wall <= 0.0 || time <= self.last_time {
+            return;
+        }
+        let now = (time - self.last_time) / wall;
+        let keep = if self.simulated_per_wall == 0.0 { 0.0 } else { (-wall / MEMORY).exp() };
+        self.simulated_per_wall = keep * self.simulated_per_wall + (1.0 - keep) * now;
+        self.last = Instant::now();
+        self.last_time = time;
+    }
+}
+
+/// Whole seconds are enough for a guess.
+fn remaining(seconds: f64) -> String {
+    match seconds.round() {
+        seconds if seconds < 60.0 => format!("{seconds} s"),
+        seconds if seconds < 1e7 => duration(Duration::from_secs_f64(seconds)),
+        _ => "> 100 days".into(),
+    }
+}
+
+/// Two significant digits below 10.
+pub(super) fn significant(value: f64) -> String {
+    match value {
+        value if value >= 9.95 => format!("{value:.0}"),
+        value if value >= 0.995 => format!("{value:.1}"),
+        value if value >= 0.0995 => format!("{value:.2}"),
+        value => format!("{value:.3}"),
+    }
+}
