@@ -37,8 +37,8 @@ pub mod step;
 pub mod walls;
 
 pub use build::BuildOptions;
+pub use edit::{Edit, EditError};
 pub use math::{Real, Vector, Vector64};
 pub use phase::{MaterialIndex, Phase};
-pub use edit::{Edit, EditError};
 pub use state::{State, StateError};
-pub use step::{FrameReport, Solver, SolverError, Stage};
+pub use step::{FrameReport, Solver, SolverError, Stage, SubstepView};

@@ -58,7 +58,11 @@ impl SceneChanges {
     /// A log cannot be changed.
     pub fn refuse_for_log(&self) -> Result<(), Failure> {
         let given = !self.overrides.is_empty() || self.duration.is_some() || self.fps.is_some() || self.seed.is_some();
-        if given { Err(Failure::usage("--set, --duration, --fps and --seed change a scene, not a log")) } else { Ok(()) }
+        if given {
+            Err(Failure::usage("--set, --duration, --fps and --seed change a scene, not a log"))
+        } else {
+            Ok(())
+        }
     }
 }
 

@@ -80,7 +80,8 @@ mod tests {
 
     #[test]
     fn durations_choose_their_unit() {
-        let texts = [0.0025, 0.421, 12.34, 59.97, 185.0, 7805.0].map(|seconds| duration(Duration::from_secs_f64(seconds)));
+        let texts =
+            [0.0025, 0.421, 12.34, 59.97, 185.0, 7805.0].map(|seconds| duration(Duration::from_secs_f64(seconds)));
         assert_eq!(texts, ["2.5 ms", "0.42 s", "12.3 s", "1 min 00 s", "3 min 05 s", "2 h 10 min"]);
     }
 }

@@ -4,7 +4,7 @@
 //! # use unipbd_core::{Edit, Solver, Vector64, edit::Points};
 //! # fn drop_in(solver: &mut Solver) -> Result<(), Box<dyn std::error::Error>> {
 //! let falling = Points { velocity: Vector64::new(0.0, -1.0), ..Points::new("water", vec![Vector64::new(0.5, 2.0)]) };
-//! let edit = Edit::new().remove([3, 4]).set_velocities([7], [Vector64::ZERO]).add(falling);
+//! let edit = Edit::new().remove([3, 4]).set_velocities([7], [Vector64::ZERO]).add_points(falling);
 //! let ids = solver.apply(&edit)?;
 //! # Ok(())
 //! # }
@@ -113,7 +113,7 @@ impl Edit {
 
     /// Adds particles.
     #[must_use]
-    pub fn add(mut self, points: Points) -> Self {
+    pub fn add_points(mut self, points: Points) -> Self {
         self.additions.push(points);
         self
     }

@@ -25,5 +25,5 @@ pub use settings::{GradientPoint, SolverSettings, Substeps};
 pub use sources::{Block, Disc, Emitter, Profile, Sheath, SmokeSource};
 pub use walls::{HalfPlane, Obstacle, Side, Tank};
 
-pub(crate) use validate::FARTHEST;
 pub(crate) use layout::{block_points, disc_points};
+pub(crate) use validate::FARTHEST;

@@ -1,7 +1,7 @@
 //! Diagnostics: sums and extremes over the state, computed when asked for.
 
-use super::{Solver, Stage};
 use super::world::World;
+use super::{Solver, Stage};
 use crate::math::{Real, Vector64, wide};
 use crate::observe::{Diagnostics, GroupDiagnostics, MaterialDiagnostics};
 use crate::phase::Phase;

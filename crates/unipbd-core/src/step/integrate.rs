@@ -22,12 +22,7 @@ pub struct BodyForce {
 }
 
 /// u = dt v + dt^2 a, x = x_n + u, for every row that has inertia; rows moved by a script keep their velocity.
-pub(super) fn predict(
-    particles: &mut Particles,
-    forces: &[BodyForce],
-    dt: Real,
-    parallelism: Parallelism,
-) {
+pub(super) fn predict(particles: &mut Particles, forces: &[BodyForce], dt: Real, parallelism: Parallelism) {
     let (materials, phases) = (&particles.material, &particles.phase);
     let (inverse_masses, temperatures) = (&particles.inverse_mass, &particles.temperature);
     let accelerations = &particles.acceleration;

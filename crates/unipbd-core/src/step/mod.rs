@@ -17,7 +17,7 @@ pub use error::SolverError;
 pub use integrate::BodyForce;
 pub use pipeline::Stage;
 pub use solver::{FrameReport, Solver};
+pub(crate) use stages::ABSURD_SPEED;
 pub use substeps::{Choice, Demand, SubstepRule};
 pub use view::SubstepView;
-pub(crate) use stages::ABSURD_SPEED;
 pub(crate) use world::{Clock, Parts, Population};

@@ -21,7 +21,8 @@ fn check_counts(checker: &mut Checker, spacing: f64) -> bool {
     let discs = scene.disc.iter().map(|disc| disc_count(disc, spacing));
     let points = scene.points.iter().map(|points| points.positions.len() as f64);
     let paths = |kind: &'static str| (0..).map(move |index| KeyPath::entry(kind, index));
-    let counts: Vec<(KeyPath, f64)> = paths("block").zip(blocks).chain(paths("disc").zip(discs)).chain(paths("points").zip(points)).collect();
+    let counts: Vec<(KeyPath, f64)> =
+        paths("block").zip(blocks).chain(paths("disc").zip(discs)).chain(paths("points").zip(points)).collect();
     let mut sane = true;
     for (path, count) in counts.iter().filter(|(_, count)| *count >= TOO_MANY_PARTICLES && count.is_finite()) {
         checker.problem(path.clone(), too_many("holds", *count), "make it smaller or raise `spacing`");

@@ -42,7 +42,12 @@ pub(super) fn check(checker: &mut Checker) {
 }
 
 fn check_points(checker: &mut Checker, path: &KeyPath, points: &Points) {
-    check_reference(checker, path.then("material"), &points.material, &[FLUIDS[0], FLUIDS[1], Phase::Smoke, Phase::Solid]);
+    check_reference(
+        checker,
+        path.then("material"),
+        &points.material,
+        &[FLUIDS[0], FLUIDS[1], Phase::Smoke, Phase::Solid],
+    );
     let (given, wanted) = (points.velocities.len(), points.positions.len());
     if given != 0 && given != wanted {
         let message = format!("there are {given} velocities for {wanted} positions");
