@@ -222,7 +222,7 @@ fn speed_colours_run_from_the_low_to_the_high_end_above_a_colour_bar() {
     frame.velocities = Some(vec![[0.0, 0.0], [3.0, 4.0]]);
     let options = RenderOptions { color_by: ColorBy::Speed, range: Range::Fixed { min: 0.0, max: 5.0 }, ..options() };
     let image = draw(&setting(), options, &frame);
-    assert!(image.height() > 400 && image.height() % 2 == 0);
+    assert!(image.height() > 400 && image.height().is_multiple_of(2));
     let [slow, fast] = [at(&image, 0.25, 0.5), at(&image, 0.75, 0.5)];
     let bar = |x: u32| image.pixel(x, 400 + 12).unwrap();
     assert!(close(bar(121), slow, 6), "{:?} {slow:?}", bar(121));

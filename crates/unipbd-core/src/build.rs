@@ -68,7 +68,7 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     };
     Parts {
         particles: particles(scene, seed, optional),
-        materials: scene.materials().enumerate().map(|(index, material)| shown(material, index)).collect(),
+        materials: shown_materials(scene),
         forces: scene.materials().map(|material| body_force(material, scene)).collect(),
         walls: Walls::new(scene),
         neighbors: Neighbors::new(periodic, real(settings.kernel_radius), real(least_skin)),
@@ -204,22 +204,30 @@ impl Filling<'_> {
     }
 }
 
-/// Colours of materials that name none, by phase and number.
-fn shown(material: MaterialRef<'_>, index: usize) -> Material {
-    const LIQUIDS: [[u8; 3]; 4] = [[58, 134, 222], [231, 111, 81], [42, 157, 143], [233, 196, 106]];
-    const GASES: [[u8; 3]; 2] = [[124, 152, 179], [179, 146, 172]];
-    const SMOKES: [[u8; 3]; 2] = [[232, 236, 241], [244, 190, 140]];
-    let default = match material.phase() {
-        Phase::Gas => GASES[index % GASES.len()],
-        Phase::Smoke => SMOKES[index % SMOKES.len()],
-        _ => LIQUIDS[index % LIQUIDS.len()],
+/// Colours of materials that name none, in turn within each phase.
+const LIQUIDS: [[u8; 3]; 4] = [[58, 134, 222], [231, 111, 81], [42, 157, 143], [233, 196, 106]];
+const GASES: [[u8; 3]; 2] = [[124, 152, 179], [179, 146, 172]];
+const SMOKES: [[u8; 3]; 2] = [[232, 236, 241], [244, 190, 140]];
+
+fn shown_materials(scene: &Scene) -> Vec<Material> {
+    let mut counts = [0; Phase::ALL.len()];
+    let shown = |material: MaterialRef<'_>| {
+        let number = &mut counts[material.phase() as usize];
+        let palette: &[[u8; 3]] = match material.phase() {
+            Phase::Gas => &GASES,
+            Phase::Smoke => &SMOKES,
+            _ => &LIQUIDS,
+        };
+        let default = palette[*number % palette.len()];
+        *number += 1;
+        Material {
+            name: material.name().to_owned(),
+            phase: material.phase(),
+            density: material.density(),
+            color: material.color().and_then(parse_color).unwrap_or(default),
+        }
     };
-    Material {
-        name: material.name().to_owned(),
-        phase: material.phase(),
-        density: material.density(),
-        color: material.color().and_then(parse_color).unwrap_or(default),
-    }
+    scene.materials().map(shown).collect()
 }
 
 /// `"#rrggbb"` as red, green, blue.

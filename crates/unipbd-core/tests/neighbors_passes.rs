@@ -68,8 +68,12 @@ impl Set {
     }
 }
 
+fn kernel() -> WendlandC2 {
+    WendlandC2::new(f64::from(RADIUS))
+}
+
 /// The results of every pass, one row of numbers each.
-fn all_passes(set: &Set, kernel: impl Shape, level: Level, parallelism: Parallelism) -> Vec<(&'static str, Vec<Real>)> {
+fn all_passes(set: &Set, kernel: WendlandC2, level: Level, parallelism: Parallelism) -> Vec<(&'static str, Vec<Real>)> {
     let rows = set.x.len();
     let pairs = set.pairs(level, parallelism);
     let (mut a, mut b, mut g) = (vec![0.0; rows], vec![0.0; rows], vec![Vector::ZERO; rows]);
@@ -97,10 +101,10 @@ fn all_passes(set: &Set, kernel: impl Shape, level: Level, parallelism: Parallel
     results
 }
 
-fn assert_levels_agree(set: &Set, kernel: impl Shape) {
-    let oracle = all_passes(set, kernel, Level::Scalar, Parallelism::Serial);
+fn assert_levels_agree(results: impl Fn(Level) -> Vec<(&'static str, Vec<Real>)>) {
+    let oracle = results(Level::Scalar);
     for level in Level::available() {
-        for ((name, wanted), (_, found)) in oracle.iter().zip(all_passes(set, kernel, level, Parallelism::Serial)) {
+        for ((name, wanted), (_, found)) in oracle.iter().zip(results(level)) {
             for (k, (wanted, found)) in wanted.iter().zip(&found).enumerate() {
                 assert!(wanted.is_finite(), "{name}: {wanted}");
                 assert_eq!(wanted.to_bits(), found.to_bits(), "{name}, {level:?}, number {k}: {wanted} {found}");
@@ -119,19 +123,29 @@ fn every_level_gives_the_bits_of_the_scalar_form() {
     assert!(Level::available().contains(&Level::best()));
     for periodic in periods() {
         for rows in [0, 1, 2, 7, 8, 9, 40, 511, 512, 513, 700] {
-            assert_levels_agree(&Set::random(rows, periodic), WendlandC2::new(f64::from(RADIUS)));
+            let set = Set::random(rows, periodic);
+            assert_levels_agree(|level| all_passes(&set, kernel(), level, Parallelism::Serial));
         }
     }
 }
 
 #[test]
 fn every_kernel_gives_the_bits_of_the_scalar_form() {
+    fn check(set: &Set, kernel: impl Shape) {
+        assert_levels_agree(|level| {
+            let pairs = set.pairs(level, Parallelism::Serial);
+            let mut out = vec![0.0; 300];
+            laplacian(pairs, kernel, &set.x, &set.field, Weights::Uniform(1.0), &mut out);
+            let mut mean = vec![Vector::ZERO; 300];
+            xsph(pairs, kernel, &set.x, &set.v, Weights::Uniform(1.0), &mut mean);
+            vec![("laplacian", out), ("xsph", mean.iter().flat_map(|v| [v.x, v.y]).collect())]
+        });
+    }
     let radius = f64::from(RADIUS);
     let set = Set::random(300, periods()[1]);
-    assert_levels_agree(&set, Poly6::new(radius));
-    assert_levels_agree(&set, Spiky::new(radius));
-    assert_levels_agree(&set, CubicSpline::new(radius));
-    assert_levels_agree(&set, Mixed { value: Poly6::new(radius), slope: Spiky::new(radius) });
+    check(&set, Poly6::new(radius));
+    check(&set, CubicSpline::new(radius));
+    check(&set, Mixed { value: Poly6::new(radius), slope: Spiky::new(radius) });
 }
 
 #[test]
@@ -139,7 +153,8 @@ fn wide_entries_give_the_bits_of_the_scalar_form() {
     // Two rows of cells with 34,000 particles each: offsets between them exceed 16 bits.
     let mut random = Random(3);
     let x = (0..68_000).map(|k| Vector::new((k / 2) as Real + random.next() * 0.5, (k % 2) as Real * 2.0 + 2.0));
-    assert_levels_agree(&Set::new(x.collect(), Periodic::NONE), WendlandC2::new(f64::from(RADIUS)));
+    let set = Set::new(x.collect(), Periodic::NONE);
+    assert_levels_agree(|level| all_passes(&set, kernel(), level, Parallelism::Serial));
 }
 
 #[test]
@@ -147,11 +162,10 @@ fn thread_counts_do_not_change_bits() {
     let mut x = Random(5).vectors(6000, SIDE);
     x.iter_mut().for_each(|x| *x *= 3.0);
     let set = Set::new(x, Periodic::NONE);
-    let kernel = WendlandC2::new(f64::from(RADIUS));
-    let serial = all_passes(&set, kernel, Level::best(), Parallelism::Serial);
+    let serial = all_passes(&set, kernel(), Level::best(), Parallelism::Serial);
     for threads in [1, 2, 3, 8] {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        let parallel = pool.install(|| all_passes(&set, kernel, Level::best(), Parallelism::Pool));
+        let parallel = pool.install(|| all_passes(&set, kernel(), Level::best(), Parallelism::Pool));
         assert!(parallel == serial, "{threads} threads");
     }
 }
@@ -165,8 +179,7 @@ fn relative(found: f64, wanted: f64, scale: f64) -> f64 {
 fn passes_compute_their_formulas() {
     for periodic in periods() {
         let set = Set::random(400, periodic);
-        let kernel = WendlandC2::new(f64::from(RADIUS));
-        let results = all_passes(&set, kernel, Level::best(), Parallelism::Serial);
+        let results = all_passes(&set, kernel(), Level::best(), Parallelism::Serial);
         let h = f64::from(RADIUS);
         let pi = std::f64::consts::PI;
         for i in 0..400 {
@@ -244,12 +257,11 @@ fn passes_compute_their_formulas() {
 #[test]
 fn corrections_and_repulsion_push_both_of_a_pair_alike() {
     let set = Set::random(600, periods()[2]);
-    let kernel = WendlandC2::new(f64::from(RADIUS));
     let pairs = set.pairs(Level::best(), Parallelism::Serial);
     let mut out = vec![Vector::ZERO; 600];
     let total = |out: &[Vector]| out.iter().fold(Vector::ZERO, |sum, &v| sum + v).length();
     let size = |out: &[Vector]| out.iter().map(|v| v.length()).sum::<Real>();
-    correction(pairs, kernel, &set.x, &set.field, &mut out);
+    correction(pairs, kernel(), &set.x, &set.field, &mut out);
     assert!(total(&out) < 1e-5 * size(&out));
     repulsion(pairs, 0.8, &set.x, Weights::Column(&set.weights), &mut out);
     out.iter_mut().zip(&set.weights).for_each(|(v, &s)| *v *= s);

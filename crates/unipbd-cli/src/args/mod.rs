@@ -29,7 +29,7 @@ Exit codes:
     3  the scene file has errors
     4  the simulation diverged (the log up to there is kept)
     5  a --stop-on condition was met
-  130  interrupted by Ctrl-C (the frame was finished and the log closed; a second Ctrl-C quits at once)
+  130  interrupted by Ctrl-C (the frame is finished and the log closed; press twice to quit at once)
 
 Environment:
   UNIPBD_THREADS  number of threads where --threads is not given
@@ -103,7 +103,7 @@ pub struct CheckArgs {
     #[command(flatten)]
     pub changes: SceneChanges,
     /// Threads of the run that is estimated [default: all]
-    #[arg(long, value_name = "N", env = "UNIPBD_THREADS", hide_env_values = true, value_parser = run::thread_count)]
+    #[arg(long, value_name = "N", help_heading = "Running", env = "UNIPBD_THREADS", hide_env_values = true, value_parser = run::thread_count)]
     pub threads: Option<usize>,
 }
 

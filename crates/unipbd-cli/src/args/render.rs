@@ -42,13 +42,13 @@ pub struct RenderArgs {
     #[command(flatten)]
     pub look: LookArgs,
     /// The program that makes MP4 files
-    #[arg(long, value_name = "PROGRAM", default_value = "ffmpeg")]
+    #[arg(long, value_name = "PROGRAM", help_heading = "Running", default_value = "ffmpeg")]
     pub ffmpeg: PathBuf,
     /// Changes to the scene.
     #[command(flatten)]
     pub changes: SceneChanges,
     /// Threads to run a scene with [default: all]; never changes results
-    #[arg(long, value_name = "N", env = "UNIPBD_THREADS", hide_env_values = true, allow_negative_numbers = true, value_parser = thread_count)]
+    #[arg(long, value_name = "N", help_heading = "Running", env = "UNIPBD_THREADS", hide_env_values = true, allow_negative_numbers = true, value_parser = thread_count)]
     pub threads: Option<usize>,
 }
 

@@ -77,7 +77,7 @@ pub struct RunArgs {
     #[command(flatten)]
     pub changes: SceneChanges,
     /// Threads to use [default: all]; never changes results
-    #[arg(long, value_name = "N", env = "UNIPBD_THREADS", hide_env_values = true, allow_negative_numbers = true, value_parser = thread_count)]
+    #[arg(long, value_name = "N", help_heading = "Running", env = "UNIPBD_THREADS", hide_env_values = true, allow_negative_numbers = true, value_parser = thread_count)]
     pub threads: Option<usize>,
     /// Stop after the first frame in which this holds, with exit code 5; may be repeated
     ///
@@ -85,7 +85,7 @@ pub struct RunArgs {
     /// [m/s], energy (kinetic and potential) [J], time [s], particles, the count of a phase
     /// (liquid, gas, smoke, rigid, solid), or a number of the diagnostics by its name, such as
     /// density_error_mean, pressure_max, kinetic_energy, substeps. Quote it: < and > mean something to a shell.
-    #[arg(long, value_name = "CONDITION", help_heading = "Ending")]
+    #[arg(long, value_name = "CONDITION", help_heading = "Running")]
     pub stop_on: Vec<StopCondition>,
     /// The log and what goes into it.
     #[command(flatten)]

@@ -107,7 +107,7 @@ fn announce(rendered: &Rendered, console: Console) -> Result<(), Failure> {
 
 /// Where frames come from.
 enum Source {
-    Log(Log),
+    Log(Box<Log>),
     Scene { loaded: Box<LoadedScene>, options: BuildOptions, fields: Fields },
 }
 
@@ -115,7 +115,7 @@ impl Source {
     fn open(arguments: &RenderArgs) -> Result<Self, Failure> {
         if is_log(&arguments.source) {
             arguments.changes.refuse_for_log()?;
-            return Ok(Source::Log(Log::open(&arguments.source)?));
+            return Ok(Source::Log(Box::new(Log::open(&arguments.source)?)));
         }
         let loaded = load(&arguments.source, &arguments.changes)?;
         let options = BuildOptions { threads: arguments.threads, seed: None };

@@ -23,7 +23,11 @@ pub(super) fn color_bar(image: &mut Image, scalar: &Scalar, top: u32, theme: &Th
     for index in top as usize * width..image.height() as usize * width {
         image.blend(index, super::color::to_float(theme.background), 1.0);
     }
-    let [left, right] = [0.30 * width as f32, 0.70 * width as f32];
+    let height = 9.0 * scale.max(0.75);
+    // The bar stands in the middle unless its title needs the room.
+    let title_width = text::width(scalar.by.label(), height) + 24.0 * scale;
+    let left = (0.30 * width as f32).max(title_width);
+    let right = (0.70 * width as f32).max(left + 0.5 * (width as f32 - left));
     let [bar, thickness] = [top as f32 + 14.0 * scale, (12.0 * scale).max(4.0)];
     for x in left as usize..right as usize {
         let color = scalar.map.color((x as f32 + 0.5 - left) / (right - left));
@@ -31,7 +35,6 @@ pub(super) fn color_bar(image: &mut Image, scalar: &Scalar, top: u32, theme: &Th
             image.blend(y * width + x, super::color::to_float(color), 1.0);
         }
     }
-    let height = 9.0 * scale.max(0.75);
     let title = Lettering { height, align: Align::Right, color: theme.text, halo: theme.background };
     text::draw(image, scalar.by.label(), [left - 14.0 * scale, bar + thickness - 1.0], title);
     let tick = Lettering { align: Align::Center, color: theme.faint_text, ..title };
@@ -47,7 +50,7 @@ pub(super) fn color_bar(image: &mut Image, scalar: &Scalar, top: u32, theme: &Th
 
 /// A number with the digits that quarters of the span need.
 fn number(value: f64, span: f64) -> String {
-    if span >= 1e5 || span < 1e-3 {
+    if !(1e-3..1e5).contains(&span) {
         return format!("{value:.1e}");
     }
     let decimals = (3.0 - span.log10().floor()).clamp(0.0, 6.0) as usize;

@@ -110,6 +110,11 @@ fn grid_width(text: &str) -> f32 {
     text.chars().map(|letter| f32::from(glyph(letter).0) + GAP).sum::<f32>() - GAP
 }
 
+/// Width of a line of text with capitals of this height [pixels].
+pub(super) fn width(text: &str, height: f32) -> f32 {
+    grid_width(text) * height / CAPITAL
+}
+
 /// How a text is set.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lettering {

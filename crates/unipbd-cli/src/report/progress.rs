@@ -38,24 +38,26 @@ impl Progress {
     /// Shows a finished frame.
     pub fn frame(&mut self, diagnostics: &Diagnostics) {
         self.speed.add(diagnostics.time);
-        let text = self.text(diagnostics);
-        match &mut self.display {
-            Display::Nothing => {}
-            Display::Bar(bar) => {
-                bar.set_position(diagnostics.frame);
-                bar.set_message(text);
-            }
-            Display::Lines { next_frame, last } => {
-                if diagnostics.frame < *next_frame && last.elapsed() < SILENCE {
-                    return;
-                }
-                let tenths = diagnostics.frame * LINES / self.frames.max(1);
-                *next_frame = ((tenths + 1) * self.frames).div_ceil(LINES);
-                *last = Instant::now();
-                let share = 100 * diagnostics.frame / self.frames.max(1);
-                self.console.note(format_args!("{share:3} %  {text}"));
-            }
+        if let Display::Bar(bar) = &self.display {
+            bar.set_position(diagnostics.frame);
+            bar.set_message(self.short_text(diagnostics));
         }
+        if self.line_is_due(diagnostics.frame) {
+            let share = 100 * diagnostics.frame / self.frames.max(1);
+            self.console.note(format_args!("{share:3} %  {}", self.text(diagnostics)));
+        }
+    }
+
+    /// A line for every tenth of the run, and where it is slow, every few seconds.
+    fn line_is_due(&mut self, frame: u64) -> bool {
+        let Display::Lines { next_frame, last } = &mut self.display else { return false };
+        if frame < *next_frame && last.elapsed() < SILENCE {
+            return false;
+        }
+        let tenths = frame * LINES / self.frames.max(1);
+        *next_frame = ((tenths + 1) * self.frames).div_ceil(LINES);
+        *last = Instant::now();
+        true
     }
 
     /// Shows events without disturbing the bar.
@@ -82,17 +84,37 @@ impl Progress {
         }
     }
 
-    fn text(&self, diagnostics: &Diagnostics) -> String {
-        let speed = self.speed.simulated_per_wall;
+    fn remaining(&self, diagnostics: &Diagnostics) -> String {
         let left = (self.duration - diagnostics.time).max(0.0);
-        let eta = if speed > 0.0 { remaining(left / speed) } else { "?".into() };
+        let speed = self.speed.simulated_per_wall;
+        if speed > 0.0 { remaining(left / speed) } else { "?".into() }
+    }
+
+    fn text(&self, diagnostics: &Diagnostics) -> String {
         format!(
-            "{:.2}/{:.2} s  frame {}/{}  {}x  ETA {eta}  {} particles  density error {} mean, {} max",
+            "{:.2}/{:.2} s  frame {}/{}  {}x  ETA {}  {} particles  density error {} mean, {} max",
             diagnostics.time,
             self.duration,
             diagnostics.frame,
             self.frames,
-            significant(speed),
+            significant(self.speed.simulated_per_wall),
+            self.remaining(diagnostics),
+            count(diagnostics.particles()),
+            percent(diagnostics.density_error_mean),
+            percent(diagnostics.density_error_max),
+        )
+    }
+
+    /// As [`text`](Self::text), for the 80 columns of a terminal, less the bar.
+    fn short_text(&self, diagnostics: &Diagnostics) -> String {
+        format!(
+            "{:.2}/{:.2} s {}/{} {}x ETA {} {} particles, C {} max {}",
+            diagnostics.time,
+            self.duration,
+            diagnostics.frame,
+            self.frames,
+            significant(self.speed.simulated_per_wall),
+            self.remaining(diagnostics),
             count(diagnostics.particles()),
             percent(diagnostics.density_error_mean),
             percent(diagnostics.density_error_max),
@@ -106,7 +128,7 @@ fn choose_display(console: Console, frames: u64) -> Display {
         Display::Nothing
     } else if std::io::stderr().is_terminal() && !data_shares_terminal {
         let bar = ProgressBar::with_draw_target(Some(frames), ProgressDrawTarget::stderr_with_hz(10));
-        let style = ProgressStyle::with_template("[{bar:20}] {wide_msg}").expect("the template is well-formed");
+        let style = ProgressStyle::with_template("[{bar:8}] {wide_msg}").expect("the template is well-formed");
         bar.set_style(style.progress_chars("=> "));
         Display::Bar(bar)
     } else {

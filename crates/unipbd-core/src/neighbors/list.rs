@@ -4,12 +4,14 @@
 //! one load brings all of them, and they are stored relative to the first row of the block, in 16
 //! bits where that is enough. Rows with fewer neighbours than the longest of their block are padded
 //! with themselves; the padding is told by the counts, never by the distance, so that coincident
-//! particles remain neighbours. Blocks are kept in chunks that are built and read in parallel.
+//! particles remain neighbours. The number of columns is even: passes take two at a time. Blocks are kept in chunks that are built and read in parallel.
 
 use super::grid::{Cursor, Grid};
-use super::periodic::Periodic;
 use crate::math::{Real, Vector};
 use crate::parallel::{CHUNK_ROWS, Parallelism};
+use crate::simd::near::{self, Near, SPARE, Work};
+use crate::simd::space::{Open, Space, Wrapped};
+use std::ops::Range;
 
 /// Rows in a block.
 pub const LANES: usize = 8;
@@ -19,9 +21,7 @@ pub const LANES: usize = 8;
 pub struct Block {
     /// Neighbours of each row; 0 for rows beyond the last.
     pub counts: [u32; LANES],
-    /// Smallest count: in this many columns no lane is padded.
-    pub full: u32,
-    /// Largest count: the number of columns.
+    /// Number of columns: the largest count, rounded up to an even number.
     pub depth: u32,
     start: u32,
     width: Width,
@@ -75,6 +75,7 @@ impl Chunk {
             + self.narrow.capacity() * 16
             + self.wide.capacity() * 32
             + self.scratch.found.capacity() * 4
+            + self.scratch.runs.capacity() * 8
     }
 }
 
@@ -95,11 +96,16 @@ impl NeighborList {
         self.rows = positions.len();
         self.radius = radius;
         self.chunks.resize_with(self.rows.div_ceil(CHUNK_ROWS), Chunk::default);
-        let search = Search { grid, positions, radius, periodic: grid.periodic() };
+        let search = &Search { grid, positions, radius };
         if grid.periodic().any() {
-            parallelism.each(self.rows, &mut self.chunks, |c, chunk| search.build_chunk::<true>(c, chunk));
+            let space = Wrapped::new(grid.periodic());
+            parallelism.each(self.rows, &mut self.chunks, |number, chunk| {
+                near::dispatch(Build { search, space, number, chunk });
+            });
         } else {
-            parallelism.each(self.rows, &mut self.chunks, |c, chunk| search.build_chunk::<false>(c, chunk));
+            parallelism.each(self.rows, &mut self.chunks, |number, chunk| {
+                near::dispatch(Build { search, space: Open, number, chunk });
+            });
         }
     }
 
@@ -172,9 +178,15 @@ struct Scratch {
     found: Vec<u32>,
     /// Room per lane.
     room: usize,
+    /// Where one row's neighbours may be.
+    runs: Vec<Range<u32>>,
 }
 
 impl Scratch {
+    fn list(&self, lane: usize, count: u32) -> &[u32] {
+        &self.found[lane * self.room..][..count as usize]
+    }
+
     /// Makes room for `room` rows per lane, keeping what lanes up to `lane` have found.
     #[cold]
     fn grow(&mut self, room: usize) {
@@ -193,13 +205,22 @@ struct Search<'a> {
     grid: &'a Grid,
     positions: &'a [Vector],
     radius: Real,
-    periodic: Periodic,
 }
 
-impl Search<'_> {
-    fn build_chunk<const PERIODIC: bool>(&self, number: usize, chunk: &mut Chunk) {
+/// One chunk to be built.
+struct Build<'a, S> {
+    search: &'a Search<'a>,
+    space: S,
+    number: usize,
+    chunk: &'a mut Chunk,
+}
+
+impl<S: Space> Work for Build<'_, S> {
+    #[inline(always)]
+    fn run<N: Near>(self, near: N) {
+        let Build { search, space, number, chunk } = self;
         let first = number * CHUNK_ROWS;
-        let last = self.positions.len().min(first + CHUNK_ROWS);
+        let last = search.positions.len().min(first + CHUNK_ROWS);
         chunk.blocks.clear();
         chunk.narrow.clear();
         chunk.wide.clear();
@@ -208,73 +229,91 @@ impl Search<'_> {
         for base in (first..last).step_by(LANES) {
             let mut counts = [0; LANES];
             for (lane, count) in counts.iter_mut().enumerate().take(last - base) {
-                *count = self.find::<PERIODIC>(base + lane, lane, &mut chunk.scratch, &mut cursor);
+                *count = search.find(near, space, base + lane, lane, &mut chunk.scratch, &mut cursor);
             }
-            chunk.push(base, counts, self.positions.len());
+            chunk.push(base, counts, search.positions.len());
         }
     }
+}
 
+impl Search<'_> {
     /// Collects the neighbours of `row` in its lane of the scratch.
     #[inline(always)]
-    fn find<const PERIODIC: bool>(&self, row: usize, lane: usize, scratch: &mut Scratch, cursor: &mut Cursor) -> u32 {
+    fn find<N: Near, S: Space>(
+        &self,
+        near: N,
+        space: S,
+        row: usize,
+        lane: usize,
+        scratch: &mut Scratch,
+        cursor: &mut Cursor,
+    ) -> u32 {
         let center = self.positions[row];
         let limit = self.radius * self.radius;
-        let mut count = 0;
+        scratch.runs.clear();
+        let own = row as u32;
         self.grid.for_each_run(center, self.radius, cursor, |run| {
-            if count + run.len() > scratch.room {
-                scratch.grow(count + run.len());
-            }
-            let found = &mut scratch.found[lane * scratch.room..(lane + 1) * scratch.room];
-            let (start, end) = (run.start as usize, run.end as usize);
-            for (j, &other) in (start..end).zip(&self.positions[start..end]) {
-                let mut apart = center - other;
-                if PERIODIC {
-                    apart = self.periodic.min_image(apart);
-                }
-                // Written always, kept if near: a branch here would be guessed wrong half the time.
-                found[count] = j as u32;
-                count += usize::from((apart.length_squared() < limit) & (j != row));
+            // The row itself is left out by searching before and after it.
+            if run.contains(&own) {
+                scratch.runs.extend([run.start..own, own + 1..run.end]);
+            } else {
+                scratch.runs.push(run);
             }
         });
+        let mut count = 0;
+        for k in 0..scratch.runs.len() {
+            let run = scratch.runs[k].start as usize..scratch.runs[k].end as usize;
+            if count + run.len() + SPARE > scratch.room {
+                scratch.grow(count + run.len() + SPARE);
+            }
+            let found = &mut scratch.found[lane * scratch.room + count..(lane + 1) * scratch.room];
+            count += near.find(space, center, limit, self.positions, run, found);
+        }
         count as u32
     }
 }
 
 impl Chunk {
     /// Transposes the lanes of the scratch into columns.
+    #[inline(always)]
     fn push(&mut self, base: usize, counts: [u32; LANES], rows: usize) {
-        let (full, depth) = (counts.into_iter().min().unwrap_or(0), counts.into_iter().max().unwrap_or(0));
         self.pairs += counts.iter().map(|&count| u64::from(count)).sum::<u64>();
-        let fits = self.lanes(&counts).flatten().all(|&row| i16::try_from(row as i64 - base as i64).is_ok());
+        let depth = counts.into_iter().max().unwrap_or(0).next_multiple_of(2);
+        let lists: [&[u32]; LANES] = std::array::from_fn(|lane| self.scratch.list(lane, counts[lane]));
         // A lane beyond the last row is padded with the last row.
-        let padding: [i32; LANES] = std::array::from_fn(|lane| (base + lane).min(rows - 1) as i32 - base as i32);
-        let columns = depth as usize;
-        let (start, width) = if fits {
+        let padding: [i32; LANES] = std::array::from_fn(|lane| lane.min(rows - 1 - base) as i32);
+        let (start, width) = if lists.iter().all(|list| fits_narrow(list, base)) {
             let start = self.narrow.len();
-            self.narrow.resize(start + columns, padding.map(|offset| offset as i16));
-            for lane in 0..LANES {
-                let found = &self.scratch.found[lane * self.scratch.room..][..counts[lane] as usize];
-                for (column, &row) in self.narrow[start..].iter_mut().zip(found) {
-                    column[lane] = (row as i64 - base as i64) as i16;
-                }
-            }
+            self.narrow.resize(start + depth as usize, padding.map(|offset| offset as i16));
+            transpose(&mut self.narrow[start..], lists, |row| relative(row, base) as i16);
             (start, Width::Narrow)
         } else {
             let start = self.wide.len();
-            self.wide.resize(start + columns, padding);
-            for lane in 0..LANES {
-                let found = &self.scratch.found[lane * self.scratch.room..][..counts[lane] as usize];
-                for (column, &row) in self.wide[start..].iter_mut().zip(found) {
-                    column[lane] = (row as i64 - base as i64) as i32;
-                }
-            }
+            self.wide.resize(start + depth as usize, padding);
+            transpose(&mut self.wide[start..], lists, |row| relative(row, base));
             (start, Width::Wide)
         };
-        self.blocks.push(Block { counts, full, depth, start: start as u32, width });
+        self.blocks.push(Block { counts, depth, start: start as u32, width });
     }
+}
 
-    fn lanes(&self, counts: &[u32; LANES]) -> impl Iterator<Item = &[u32]> {
-        let room = self.scratch.room;
-        counts.iter().enumerate().map(move |(lane, &count)| &self.scratch.found[lane * room..][..count as usize])
+/// A row as seen from the first row of a block.
+#[inline(always)]
+fn relative(row: u32, base: usize) -> i32 {
+    row.wrapping_sub(base as u32) as i32
+}
+
+#[inline(always)]
+fn fits_narrow(list: &[u32], base: usize) -> bool {
+    let (low, high) = list.iter().map(|&row| relative(row, base)).fold((0, 0), |(l, h), o| (o.min(l), o.max(h)));
+    low >= i32::from(i16::MIN) && high <= i32::from(i16::MAX)
+}
+
+#[inline(always)]
+fn transpose<E>(columns: &mut [[E; LANES]], lists: [&[u32]; LANES], entry: impl Fn(u32) -> E) {
+    for (lane, list) in lists.into_iter().enumerate() {
+        for (column, &row) in columns.iter_mut().zip(list) {
+            column[lane] = entry(row);
+        }
     }
 }

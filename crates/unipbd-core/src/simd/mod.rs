@@ -9,9 +9,10 @@
 //! In the formulas x_ij = x_i - x_j (the shortest image of it), W is the kernel and grad W = g x_ij
 //! its gradient at x_i. A row's own contribution W(0) is left out.
 
+pub(crate) mod near;
 mod passes;
 mod shapes;
-mod space;
+pub(crate) mod space;
 
 #[cfg(not(feature = "f64"))]
 mod lanes;

@@ -5,13 +5,13 @@ use crate::math::Real;
 use crate::neighbors::{Periodic, PeriodicAxis};
 
 /// Turns a difference of coordinates into that of the nearest images.
-pub(super) trait Space: Copy + Send + Sync {
+pub(crate) trait Space: Copy + Send + Sync {
     fn shortest<N: Number>(self, x: N, y: N) -> (N, N);
 }
 
 /// A domain without periods: scenes without them do not pay for them.
 #[derive(Clone, Copy)]
-pub(super) struct Open;
+pub(crate) struct Open;
 
 impl Space for Open {
     #[inline(always)]
@@ -22,7 +22,7 @@ impl Space for Open {
 
 /// A domain with a period along one or both axes.
 #[derive(Clone, Copy)]
-pub(super) struct Wrapped {
+pub(crate) struct Wrapped {
     x: Wrap,
     y: Wrap,
 }
@@ -51,7 +51,7 @@ impl Wrap {
 }
 
 impl Wrapped {
-    pub fn new(periodic: Periodic) -> Wrapped {
+    pub(crate) fn new(periodic: Periodic) -> Wrapped {
         Wrapped { x: Wrap::new(periodic.x), y: Wrap::new(periodic.y) }
     }
 }

@@ -234,3 +234,28 @@ impl Lanes for Avx2 {
         out
     }
 }
+
+impl Avx2 {
+    /// The coordinates of eight vectors in a row, each in the order 0 1 4 5 2 3 6 7.
+    ///
+    /// # Safety
+    /// The machine has AVX2, and eight vectors may be read.
+    #[inline(always)]
+    pub(super) unsafe fn deinterleaved(vectors: *const Vec2) -> (Self, Self) {
+        // SAFETY: passed on to the caller; the loads ask for no alignment.
+        unsafe {
+            let (first, second) = (_mm256_loadu_ps(vectors.cast()), _mm256_loadu_ps(vectors.add(4).cast()));
+            (Avx2(_mm256_shuffle_ps::<0x88>(first, second)), Avx2(_mm256_shuffle_ps::<0xdd>(first, second)))
+        }
+    }
+
+    /// A bit for each lane below `limit`, for lanes in the order of [`deinterleaved`](Self::deinterleaved).
+    #[inline(always)]
+    pub(super) fn bits_below(self, limit: Self) -> u32 {
+        // SAFETY: a value of this type proves AVX2.
+        unsafe {
+            let below = _mm256_castps_pd(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, limit.0));
+            _mm256_movemask_ps(_mm256_castpd_ps(_mm256_permute4x64_pd::<0xd8>(below))) as u32
+        }
+    }
+}

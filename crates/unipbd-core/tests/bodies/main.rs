@@ -2,5 +2,8 @@
 
 mod friction;
 mod impacts;
+mod joints;
 mod piles;
+mod shapes;
+mod sleep;
 mod world;

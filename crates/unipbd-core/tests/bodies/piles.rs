@@ -2,12 +2,18 @@ use super::world::{GRAVITY, World, at, body, floor, unit_box};
 use unipbd_core::bodies::{BodySpec, MassSpec, Surface};
 use unipbd_core::shapes::{Shape, Wall};
 
-fn stack(height: u32) -> World {
+/// Boxes on each other, sideways out of line by up to `offset` [m], `gap` apart [m].
+fn stack(height: u32, offset: f64, gap: f64) -> World {
     let mut world = World::new(&[floor(Surface::with_friction(0.5))]);
     for k in 0..height {
-        world.add(unit_box(at(0.0, 0.5 + f64::from(k))));
+        let k = f64::from(k);
+        world.add(unit_box(at(offset * k.sin(), 0.5 + gap + (1.0 + gap) * k)));
     }
     world
+}
+
+fn drift(world: &World, start: &[f64]) -> f64 {
+    world.ids().map(|id| (world.position(id).x - start[id as usize]).abs()).fold(0.0, f64::max)
 }
 
 /// Rows of boxes, each standing on two; mirrored about x = 0.
@@ -37,24 +43,24 @@ fn mirror_error(world: &World, rows: u32) -> f64 {
 
 #[test]
 fn twenty_boxes_stand() {
-    let mut world = stack(20);
-    world.run(19.0);
-    let speed = world.fastest_in(1.0);
-    let drift = world.ids().map(|id| world.position(id).x.abs()).fold(0.0, f64::max);
-    println!("stack of 20: speed {speed:.1e} m/s, drift {drift:.1e} m, overlap {:.1e} m", world.penetration());
-    assert!(drift <= 0.02 && world.penetration() <= 1e-3);
+    for offset in [0.0, 0.01] {
+        let mut world = stack(20, offset, 0.0);
+        let start: Vec<f64> = world.ids().map(|id| world.position(id).x).collect();
+        world.run(19.0);
+        let speed = world.fastest_in(1.0);
+        let (drift, overlap) = (drift(&world, &start), world.penetration());
+        println!("stack of 20, offset {offset}: speed {speed:.1e} m/s, drift {drift:.1e} m, overlap {overlap:.1e} m");
+        assert!(drift <= 0.02 && overlap <= 1e-3 && speed < 0.02);
+    }
 }
 
 #[test]
-fn disturbed_stack_of_ten_comes_to_rest() {
-    let mut world = World::new(&[floor(Surface::with_friction(0.5))]);
-    for k in 0..10 {
-        world.add(unit_box(at(0.05 * f64::from(k).sin(), 0.52 + 1.02 * f64::from(k))));
-    }
-    world.run(19.0);
+fn ten_boxes_dropped_out_of_line_come_to_rest() {
+    let mut world = stack(10, 0.05, 0.02);
+    world.run(9.0);
     let speed = world.fastest_in(1.0);
-    println!("stack of 10, dropped unevenly: speed {speed:.1e} m/s");
-    assert!(world.position(9).y > 9.4 && speed < 0.02);
+    println!("stack of 10, dropped out of line: speed {speed:.1e} m/s after 10 s");
+    assert!(world.position(9).y > 9.49 && speed < 0.02);
 }
 
 #[test]
@@ -64,7 +70,7 @@ fn pyramid_of_210_boxes_stands_mirrored() {
     let speed = world.fastest_in(1.0);
     let (overlap, mirror) = (world.penetration(), mirror_error(&world, 20));
     println!("pyramid of 210, 8 s: speed {speed:.1e} m/s, overlap {overlap:.1e} m, mirror error {mirror:.1e} m");
-    assert!(overlap <= 1e-3 && mirror <= 1e-9 && speed <= 1e-6);
+    assert!(overlap <= 1e-3 && mirror <= 1e-9 && speed <= 1e-5);
 }
 
 #[test]
@@ -110,4 +116,37 @@ fn settled_discs_hardly_overlap() {
         world.fastest()
     );
     assert!(world.penetration() < 5e-3 && world.ids().all(|id| world.position(id).y > 0.24));
+}
+
+/// 5000 bodies falling into a tank; times are printed, for a look and not for a bar.
+fn settle_5000(shape: impl Fn(u32) -> Shape) {
+    let mut world = World::new(&Wall::tank(at(0.0, 0.0), at(50.0, 200.0), Surface::default()));
+    world.substeps = 8;
+    for k in 0..5000u32 {
+        let jitter = 0.05 * (f64::from(k) * 12.9898).sin();
+        let place = at(0.4 + 0.6 * f64::from(k % 82) + jitter, 0.3 + 0.6 * f64::from(k / 82));
+        world.add(body(shape(k), place, Surface::default()));
+    }
+    for part in 0..4 {
+        let started = std::time::Instant::now();
+        world.run(2.0);
+        let per_frame = started.elapsed().as_secs_f64() * 1e3 / 120.0;
+        let (points, overlap, fastest) = (world.contacts.points().count(), world.penetration(), world.fastest());
+        let mean = world.contacts.points().map(|p| (-p.gap).max(0.0)).sum::<f64>() / points as f64;
+        println!("from {} s: {per_frame:.2} ms per frame, {points} points, speed {fastest:.1e} m/s", 2 * part);
+        println!("overlap {overlap:.1e} m, mean {mean:.1e} m");
+    }
+    assert!(world.penetration() < 0.05);
+}
+
+#[test]
+#[ignore = "a minute of work"]
+fn five_thousand_discs_settle() {
+    settle_5000(|_| Shape::Disc { radius: 0.25 });
+}
+
+#[test]
+#[ignore = "a minute of work"]
+fn five_thousand_boxes_settle() {
+    settle_5000(|_| Shape::rectangle(0.5, 0.5));
 }

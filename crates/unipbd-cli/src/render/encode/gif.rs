@@ -108,7 +108,7 @@ impl GifWriter {
                 let delay = clock.next_delay();
                 encoder.write_frame(&shown.next(frame, size, &mut matcher, effort.tolerance, delay))?;
             }
-            encoder.into_inner().map_err(gif::EncodingError::from)
+            encoder.into_inner()
         };
         encoded().map_err(|error| RenderError::Write { path: self.path.clone(), source: std::io::Error::other(error) })
     }

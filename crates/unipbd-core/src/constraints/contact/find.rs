@@ -1,9 +1,9 @@
 //! Finds the contacts of each substep and hands on the impulses of the last one.
 
 use super::broad;
+use super::manifold::{Contact, Point, Touching, entry};
 use super::narrow::{self, Touch};
 use super::pieces::{Bounds, NONE, Pieces};
-use super::point::{Contact, Impulse, Touching, entry};
 use crate::bodies::{Bodies, Surface};
 use crate::math::Vector64;
 use crate::shapes::Wall;
@@ -94,10 +94,10 @@ impl Finder {
     /// sleeping bodies the forces they fell asleep with times `square`, dt^2.
     pub fn keep_impulses(&mut self, scale: f64, square: f64) {
         for contact in &mut self.candidates {
-            let pair = &self.pairs[contact.pair as usize];
+            let pair = &self.pairs[contact.who.pair as usize];
             let (known, scale) = if pair.frozen { (&self.frozen, square) } else { (&self.contacts, scale) };
             let range = pair.first as usize..(pair.first + pair.count) as usize;
-            contact.impulse = kept(contact, &known[range], pair.near, scale);
+            keep(contact, &known[range], 5.0 * pair.near, scale);
         }
         std::mem::swap(&mut self.contacts, &mut self.candidates);
         for &index in &self.active {
@@ -105,7 +105,7 @@ impl Finder {
             (pair.first, pair.count, pair.frozen) = (0, 0, false);
         }
         for (contact, index) in self.contacts.iter().zip(0u32..) {
-            let pair = &mut self.pairs[contact.pair as usize];
+            let pair = &mut self.pairs[contact.who.pair as usize];
             if pair.count == 0 {
                 pair.first = index;
             }
@@ -125,7 +125,7 @@ impl Finder {
                     frozen.extend_from_slice(&self.frozen[range]);
                 } else {
                     frozen.extend_from_slice(&self.contacts[range]);
-                    frozen[start..].iter_mut().for_each(|c| c.impulse = c.impulse.scaled(1.0 / (dt * dt)));
+                    frozen[start..].iter_mut().for_each(|contact| scale_impulses(contact, 1.0 / (dt * dt)));
                 }
                 (pair.first, pair.frozen) = (start as u32, true);
             }
@@ -254,27 +254,46 @@ impl Finder {
         };
         // Pieces of walls come first: the body must be the first of the contact.
         let swapped = a == NONE;
-        let bodies_of = if swapped { (b, a) } else { (a, b) };
+        let (a, b) = if swapped { (b, a) } else { (a, b) };
         let center = |id: u32| bodies.poses.get(id as usize).map_or(Vector64::ZERO, |pose| pose.position);
-        let who =
-            Touching { pair: index, bodies: bodies_of, wall, surface: pair.surface, rolling_arm: pair.rolling_arm };
-        let centers = (center(bodies_of.0), center(bodies_of.1));
+        let who = Touching { pair: index, a, b, wall, surface: pair.surface, rolling_arm: pair.rolling_arm };
+        let (start, centers) = (contacts.len(), (center(a), center(b)));
         for touch in touches.iter() {
             let touch = if swapped { touch.reversed() } else { *touch };
-            contacts.push(Contact::new(&touch, &who, centers));
+            let fitting = contacts[start..].iter().position(|contact| contact.has_room(touch.normal));
+            let place = fitting.map_or(contacts.len(), |place| start + place);
+            if place == contacts.len() {
+                contacts.push(Contact::new(&who, touch.normal));
+            }
+            contacts[place].add(&touch, centers);
         }
     }
 }
 
-/// The impulse of the same contact in the last substep: the same vertex, or else the same place.
-fn kept(contact: &Contact, known: &[Contact], near: f64, scale: f64) -> Impulse {
-    let same = known.iter().find(|old| old.feature == contact.feature);
-    let close = |old: &&Contact| (old.arm_a - contact.arm_a).length_squared() < (5.0 * near) * (5.0 * near);
-    let Some(old) = same.or_else(|| known.iter().find(close)) else { return Impulse::default() };
-    if old.rebound != 0.0 {
-        return Impulse::default();
+/// Gives a contact the impulses of the same points in the last substep: the same vertex, or else the
+/// same place. Where something rebounded they are no guess of what comes.
+fn keep(contact: &mut Contact, known: &[Contact], near: f64, scale: f64) {
+    let old = || known.iter().flat_map(Contact::points);
+    for point in contact.points_mut() {
+        let close = |old: &&Point| (old.arm_a - point.arm_a).length_squared() < near * near;
+        let same = old().find(|old| old.feature == point.feature).or_else(|| old().find(close));
+        if let Some(old) = same.filter(|old| old.rebound == 0.0) {
+            point.normal_impulse = old.normal_impulse * scale;
+            point.tangent_impulse = old.tangent_impulse * scale;
+        }
     }
-    old.impulse.scaled(scale)
+    let rebounded = old().any(|point| point.rebound != 0.0);
+    if let Some(first) = known.first().filter(|_| !rebounded) {
+        contact.rolling_impulse = first.rolling_impulse * scale;
+    }
+}
+
+fn scale_impulses(contact: &mut Contact, factor: f64) {
+    contact.rolling_impulse *= factor;
+    for point in contact.points_mut() {
+        point.normal_impulse *= factor;
+        point.tangent_impulse *= factor;
+    }
 }
 
 /// Each body's reach, or that of a faster one it is paired with.

@@ -1,8 +1,8 @@
 //! A Jacobi sweep over contacts: each computes its push from the same state into its own slot, then
 //! each body gathers its pushes in the order of the contacts. The same bits on any number of threads.
 
+use super::manifold::Contact;
 use super::pieces::NONE;
-use super::point::Contact;
 use crate::bodies::{Response, Twist};
 use crate::math::Vector64;
 use rayon::prelude::*;
@@ -48,7 +48,7 @@ impl Jacobi {
         }
         self.starts.clear();
         self.starts.resize(bodies + 1, 0);
-        let sides = || contacts.iter().zip(0u32..).flat_map(|(c, k)| [(c.a, 2 * k), (c.b, 2 * k + 1)]);
+        let sides = || contacts.iter().zip(0u32..).flat_map(|(c, k)| [(c.who.a, 2 * k), (c.who.b, 2 * k + 1)]);
         for (body, _) in sides().filter(|&(body, _)| body != NONE) {
             self.starts[body as usize + 1] += 1;
         }
@@ -72,9 +72,9 @@ impl Jacobi {
         if !is_parallel(contacts) {
             for contact in contacts {
                 let push = rule(contact);
-                self.sums[contact.a as usize] += push.on_a();
-                if contact.b != NONE {
-                    self.sums[contact.b as usize] -= push.on_b();
+                self.sums[contact.who.a as usize] += push.on_a();
+                if contact.who.b != NONE {
+                    self.sums[contact.who.b as usize] -= push.on_b();
                 }
             }
             return;

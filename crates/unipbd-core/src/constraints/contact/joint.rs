@@ -1,11 +1,12 @@
 //! Joints between two bodies, or a body and the world: hinges with motors, and distances.
 //!
-//! Equality constraints J u = 0 in the same split-Jacobi sweep as the contacts. Arms are taken half a
-//! substep ahead, so that a body on a hinge keeps its energy as it turns; what drift remains is removed
-//! from the positions alone. A distance with compliance is a spring, solved as in Macklin et al. 2016.
+//! Equality constraints J u = 0 in the same split-Jacobi sweep as the contacts. Impulses act where the
+//! anchors are at the start of a substep, and stop the motion of the anchors in its middle: as in leapfrog
+//! schemes (SHAKE, Ryckaert et al. 1977) a body on a hinge so keeps its energy as it turns. What drift
+//! remains is removed from the positions alone. A distance with compliance is a spring, solved as in Macklin et al. 2016.
 
+use super::manifold::entry;
 use super::pieces::NONE;
-use super::point::entry;
 use crate::bodies::{Bodies, Pose, Response, Twist};
 use crate::math::Vector64;
 
@@ -69,7 +70,9 @@ pub(super) struct Linked {
     pub impulse: Vector64,
     /// Impulse of the motor [kg m^2].
     pub motor: f64,
+    /// Arms of the anchors at the start of the substep, where impulses act, and in its middle.
     arms: (Vector64, Vector64),
+    middle: (Vector64, Vector64),
     /// Anchor of the first body seen from that of the second, at the start of the substep [m].
     offset: Vector64,
     split: (Response, Response),
@@ -79,7 +82,7 @@ pub(super) struct Linked {
 impl Linked {
     pub fn new(joint: Joint) -> Linked {
         let (impulse, offset, arms) = (Vector64::ZERO, Vector64::ZERO, Default::default());
-        Linked { joint, impulse, motor: 0.0, arms, offset, split: Default::default(), dt: 0.0 }
+        Linked { joint, impulse, motor: 0.0, arms, middle: arms, offset, split: Default::default(), dt: 0.0 }
     }
 
     pub fn bodies(&self) -> (u32, u32) {
@@ -94,8 +97,9 @@ impl Linked {
             (pose.position, Vector64::from_angle(turned).rotate(anchor))
         };
         let ((a, b), joint) = (self.bodies(), &self.joint);
-        self.arms = (arm(a, joint.anchor, 0.5).1, arm(b, joint.other_anchor, 0.5).1);
+        self.middle = (arm(a, joint.anchor, 0.5).1, arm(b, joint.other_anchor, 0.5).1);
         let ((at_a, arm_a), (at_b, arm_b)) = (arm(a, joint.anchor, 0.0), arm(b, joint.other_anchor, 0.0));
+        self.arms = (arm_a, arm_b);
         self.offset = (at_a + arm_a) - (at_b + arm_b);
     }
 
@@ -124,7 +128,7 @@ impl Linked {
 
     fn relative(&self, motion: &[Twist]) -> Vector64 {
         let (a, b) = self.bodies();
-        entry(motion, a).at(self.arms.0) - entry(motion, b).at(self.arms.1)
+        entry(motion, a).at(self.middle.0) - entry(motion, b).at(self.middle.1)
     }
 
     /// One iteration from the given displacements: pushes on the first body, and to be taken from the second.
@@ -174,22 +178,25 @@ impl Linked {
 
     /// The impulse that would move the anchors apart by `apart` (2 x 2 system of the split masses).
     fn solve_point(&self, apart: Vector64) -> Vector64 {
-        let ((a, b), (p, q)) = (self.split, self.arms);
-        let linear = a.linear + b.linear;
-        let xx = linear + p.y * p.y * a.angular + q.y * q.y * b.angular;
-        let yy = linear + p.x * p.x * a.angular + q.x * q.x * b.angular;
-        let xy = -(p.x * p.y * a.angular + q.x * q.y * b.angular);
-        let determinant = xx * yy - xy * xy;
+        let (a, b) = self.split;
+        let response = |unit: Vector64| {
+            let moved = |arm: Vector64, middle: Vector64| middle.perp() * arm.perp_dot(unit);
+            let turned = moved(self.arms.0, self.middle.0) * a.angular + moved(self.arms.1, self.middle.1) * b.angular;
+            unit * (a.linear + b.linear) + turned
+        };
+        let (x, y) = (response(Vector64::X), response(Vector64::Y));
+        let determinant = x.perp_dot(y);
         if determinant <= 0.0 {
             return Vector64::ZERO;
         }
-        Vector64::new(yy * apart.x - xy * apart.y, xx * apart.y - xy * apart.x) / determinant
+        Vector64::new(apart.perp_dot(y), x.perp_dot(apart)) / determinant
     }
 
     fn weight(&self, along: Vector64) -> f64 {
-        let ((a, b), (p, q)) = (self.split, self.arms);
-        let moment = |arm: Vector64| arm.perp_dot(along) * arm.perp_dot(along);
-        (a.linear + b.linear + moment(p) * a.angular + moment(q) * b.angular).max(f64::MIN_POSITIVE)
+        let (a, b) = self.split;
+        let moment = |arm: Vector64, middle: Vector64| arm.perp_dot(along) * middle.perp_dot(along);
+        let (at_a, at_b) = (moment(self.arms.0, self.middle.0), moment(self.arms.1, self.middle.1));
+        (a.linear + b.linear + at_a * a.angular + at_b * b.angular).max(f64::MIN_POSITIVE)
     }
 
     /// Position-only pushes that take away half of the drift, after the poses have moved.

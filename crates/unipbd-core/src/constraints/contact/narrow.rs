@@ -1,8 +1,9 @@
 //! Narrow phase: where two rounded convex pieces touch, or are about to.
 //!
 //! Vertices of each piece are tested against the faces of the other, both ways alike, so that
-//! neither piece is preferred and a mirrored pair gives mirrored contacts. Only pieces whose
-//! unrounded cores overlap (deep starts) fall back to a single separating face.
+//! neither piece is preferred and a mirrored pair gives mirrored contacts. Where even the
+//! unrounded cores overlap (deep starts), vertices would pull in all directions: convex solids are then
+//! parted over a single face. In a piece cut from a concave solid that face may be the wrong way out.
 
 use super::pieces::{HalfPlane, PieceView};
 use crate::math::Vector64;
@@ -40,18 +41,21 @@ pub(super) fn against_half_plane(a: &PieceView, plane: &HalfPlane, margin: f64, 
 /// Contacts of two pieces with gaps below `margin`.
 pub(super) fn between(a: &PieceView, b: &PieceView, margin: f64, out: &mut Vec<Touch>) {
     let radii = a.radius + b.radius;
+    let mut overlap = false;
     if !a.is_round() && !b.is_round() {
         let (Some(of_b), Some(of_a)) = (separation(a, b, radii + margin), separation(b, a, radii + margin)) else {
             return;
         };
-        if of_a.max(of_b) < 0.0 {
-            return overlapping_cores(a, b, out);
-        }
+        overlap = of_a.max(of_b) < 0.0;
     }
-    vertices_on_faces(a, b, margin, out, |touch| touch);
-    vertices_on_faces(b, a, margin, out, Touch::reversed);
-    if out.is_empty() {
-        closest_vertices(a, b, margin, out);
+    if overlap && a.is_whole() && b.is_whole() {
+        return overlapping_cores(a, b, out);
+    }
+    let over_b = vertices_on_faces(a, b, margin, out, |touch| touch);
+    let over_a = vertices_on_faces(b, a, margin, out, Touch::reversed);
+    closest_vertices(a, b, (over_b, over_a), margin, out);
+    if overlap && out.is_empty() {
+        overlapping_cores(a, b, out);
     }
 }
 
@@ -85,8 +89,16 @@ fn lowest(a: &PieceView, point: Vector64, normal: Vector64) -> f64 {
     a.vertices.iter().map(|&p| (p - point).dot(normal)).fold(f64::INFINITY, f64::min)
 }
 
-/// Adds the vertices of `a` that lie over a face of `b`. `named` restores the order of the pieces.
-fn vertices_on_faces(a: &PieceView, b: &PieceView, margin: f64, out: &mut Vec<Touch>, named: impl Fn(Touch) -> Touch) {
+/// Adds the vertices of `a` that lie over a face of `b`, and returns which do, near or far, a bit each.
+/// `named` restores the order of the pieces.
+fn vertices_on_faces(
+    a: &PieceView,
+    b: &PieceView,
+    margin: f64,
+    out: &mut Vec<Touch>,
+    named: impl Fn(Touch) -> Touch,
+) -> u64 {
+    let mut over = 0;
     let radii = a.radius + b.radius;
     // A rounded vertex may reach a little past the end of a face; a disc ends exactly there.
     let overhang = if a.is_round() { 0.0 } else { 0.25 * radii };
@@ -98,11 +110,13 @@ fn vertices_on_faces(a: &PieceView, b: &PieceView, margin: f64, out: &mut Vec<To
         let gap = height - radii;
         let over_face = along >= -overhang && along <= length + overhang;
         let known = |touch: &Touch| ((touch.on_a + touch.on_b) * 0.5 - p).dot(tangent).abs() < 0.5 * radii;
+        over |= u64::from(over_face) << (k % 64);
         if over_face && gap < margin && !out.iter().any(known) {
             let (on_a, on_b) = (p - normal * a.radius, p - normal * (height - b.radius));
             out.push(named(Touch { normal, on_a, on_b, gap, feature: k as u32 }));
         }
     }
+    over
 }
 
 /// The face of a piece that a point is farthest above (or least below), and how far.
@@ -117,15 +131,17 @@ fn face_below(p: Vector64, piece: &PieceView) -> Option<(usize, f64)> {
             best = Some((k, height));
         }
     }
-    // Beyond a cut through the solid lies another of its pieces, which then has the say.
-    best.filter(|_| !piece.is_round() && cut <= 0.0)
+    // Inside the solid but beyond a cut lies another of its pieces, which then has the say.
+    best.filter(|&(_, height)| !piece.is_round() && (height >= 0.0 || cut <= 0.0))
 }
 
-/// Adds the closest pair of vertices: for discs, and for corners that meet.
-fn closest_vertices(a: &PieceView, b: &PieceView, margin: f64, out: &mut Vec<Touch>) {
+/// Adds the closest pair of vertices neither of which is over a face: for discs, and for corners that
+/// meet. Without this rule flush boxes would catch each other at their corners.
+fn closest_vertices(a: &PieceView, b: &PieceView, over: (u64, u64), margin: f64, out: &mut Vec<Touch>) {
+    let free = |piece: &PieceView, over: u64, k: usize| piece.sampled[k] && over >> (k % 64) & 1 == 0;
     let mut best: Option<(f64, usize, usize)> = None;
-    for (i, &p) in a.vertices.iter().enumerate().filter(|&(i, _)| a.sampled[i]) {
-        for (j, &q) in b.vertices.iter().enumerate().filter(|&(j, _)| b.sampled[j]) {
+    for (i, &p) in a.vertices.iter().enumerate().filter(|&(i, _)| free(a, over.0, i)) {
+        for (j, &q) in b.vertices.iter().enumerate().filter(|&(j, _)| free(b, over.1, j)) {
             let square = (p - q).length_squared();
             if best.is_none_or(|(least, ..)| square < least) {
                 best = Some((square, i, j));
@@ -135,7 +151,9 @@ fn closest_vertices(a: &PieceView, b: &PieceView, margin: f64, out: &mut Vec<Tou
     let Some((square, i, j)) = best else { return };
     let (p, q, distance) = (a.vertices[i], b.vertices[j], square.sqrt());
     let gap = distance - a.radius - b.radius;
-    if gap < margin {
+    let reach = a.radius + b.radius;
+    let known = |touch: &Touch| (touch.on_a - p).length_squared() < reach * reach;
+    if gap < margin && !out.iter().any(known) {
         let normal = if distance > 0.0 { (p - q) / distance } else { Vector64::Y };
         let feature = if b.is_round() && !a.is_round() { j as u32 | OF_SECOND } else { i as u32 };
         out.push(Touch { normal, on_a: p - normal * a.radius, on_b: q + normal * b.radius, gap, feature });

@@ -77,6 +77,11 @@ impl PieceView<'_> {
     pub fn is_round(&self) -> bool {
         self.vertices.len() == 1
     }
+
+    /// Whether it is the whole of a convex solid, no cut side.
+    pub fn is_whole(&self) -> bool {
+        self.outer.iter().all(|&outer| outer)
+    }
 }
 
 #[derive(Clone, Copy)]

@@ -2,8 +2,8 @@
 //! while, and wake together. Impulses are kept, so that a woken pile stands as it stood.
 
 use super::joint::Linked;
+use super::manifold::Contact;
 use super::pieces::NONE;
-use super::point::Contact;
 use crate::bodies::Bodies;
 
 /// When bodies fall asleep.
@@ -17,7 +17,7 @@ pub struct SleepSettings {
 
 impl Default for SleepSettings {
     fn default() -> Self {
-        SleepSettings { speed: 0.02, delay: 0.5 }
+        SleepSettings { speed: 0.05, delay: 0.5 }
     }
 }
 
@@ -57,12 +57,11 @@ impl Islands {
                 }
             }
         };
-        for contact in contacts.iter().filter(|contact| contact.b != NONE) {
-            if bodies.asleep[contact.a as usize] || bodies.asleep[contact.b as usize] {
-                let approach = contact.opening(&bodies.velocities).min(0.0) * dt;
-                if contact.gap + approach < 1e-3 * bodies.sizes[contact.a as usize] {
-                    touch(self, bodies, contact.a, contact.b);
-                }
+        for contact in contacts.iter().filter(|contact| contact.who.b != NONE) {
+            let (a, b) = (contact.who.a, contact.who.b);
+            let asleep = bodies.asleep[a as usize] || bodies.asleep[b as usize];
+            if asleep && contact.gap_after(&bodies.velocities, dt) < 1e-3 * bodies.sizes[a as usize] {
+                touch(self, bodies, a, b);
             }
         }
         for (a, b) in joints.iter().map(Linked::bodies).filter(|&(_, b)| b != NONE) {
@@ -96,7 +95,8 @@ impl Islands {
         }
         self.parents.clear();
         self.parents.extend(0..bodies.len() as u32);
-        let touching = contacts.iter().filter(|contact| contact.impulse.normal > 0.0).map(|c| (c.a, c.b));
+        let touching =
+            contacts.iter().filter(|contact| contact.is_pressed()).map(|contact| (contact.who.a, contact.who.b));
         for (a, b) in touching.chain(joints.iter().map(Linked::bodies)).filter(|&(_, b)| b != NONE) {
             self.unite(bodies, a, b);
         }

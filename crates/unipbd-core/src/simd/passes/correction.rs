@@ -71,14 +71,13 @@ mod lanes {
         }
 
         #[inline(always)]
-        unsafe fn add<F: Lanes, E: Entry>(
+        unsafe fn terms<F: Lanes, E: Entry>(
             &self,
             own: &Self::Own<F>,
-            sums: &mut [F; 2],
             base: usize,
             column: &[E; LANES],
             _counted: impl Fn(F) -> F,
-        ) {
+        ) -> [F; 2] {
             // SAFETY: the caller vouches that all rows are within the columns.
             let ((other_x, other_y), multiplier) = unsafe {
                 (
@@ -89,8 +88,7 @@ mod lanes {
             let (x, y) = self.space.shortest(own.0 - other_x, own.1 - other_y);
             let factor = self.kernel.at(x * x + y * y).1 * (own.2 + multiplier);
             // Padding lies at distance zero and adds nothing.
-            sums[0] = sums[0] + factor * x;
-            sums[1] = sums[1] + factor * y;
+            [factor * x, factor * y]
         }
     }
 }

@@ -1,10 +1,11 @@
 //! The sums of the density constraint.
 
-use super::{Pairs, Pass, Weights, in_space, rows_if};
+use super::{Pairs, Pass, Sink, Weights, in_space, rows_if, store, store_vectors};
 use crate::math::{Real, Vector};
-use crate::neighbors::NeighborList;
+use crate::neighbors::{LANES, NeighborList};
 use crate::simd::shapes::{Number, Shape};
 use crate::simd::space::Space;
+use std::ops::Range;
 
 /// What the density pass reads.
 #[derive(Clone, Copy)]
@@ -27,6 +28,15 @@ pub struct DensityOutput<'a> {
     pub response: &'a mut [Real],
 }
 
+impl Sink<4> for DensityOutput<'_> {
+    #[inline(always)]
+    fn store(&mut self, rows: Range<usize>, [w, x, y, q]: &[[Real; LANES]; 4]) {
+        store(&mut self.value[rows.clone()], w);
+        store_vectors(&mut self.gradient[rows.clone()], x, y);
+        store(&mut self.response[rows], q);
+    }
+}
+
 /// Sums W, grad W and w |grad W|^2 over the neighbours of each row.
 pub fn density<K: Shape>(pairs: Pairs<'_>, kernel: K, input: DensityInput<'_>, out: DensityOutput<'_>) {
     in_space!(pairs, space => match (input.gradient_positions.is_some(), input.weights.is_column()) {
@@ -40,9 +50,7 @@ pub fn density<K: Shape>(pairs: Pairs<'_>, kernel: K, input: DensityInput<'_>, o
 fn fill(pairs: Pairs<'_>, pass: &impl super::AnyForm<4>, out: DensityOutput<'_>) {
     pairs.check(out.value.len());
     pairs.parallelism.chunks3(out.value, out.gradient, out.response, |first, value, gradient, response| {
-        pairs.run_chunk(pass, first, value.len(), |row, [w, x, y, q]: [Real; 4]| {
-            (value[row], gradient[row], response[row]) = (w, Vector::new(x, y), q);
-        });
+        pairs.run_chunk(pass, first, value.len(), &mut DensityOutput { value, gradient, response });
     });
 }
 
@@ -107,7 +115,6 @@ impl<K: Shape, S: Space, const SPLIT: bool, const WEIGHTED: bool> Pass<4> for De
 #[cfg(not(feature = "f64"))]
 mod lanes {
     use super::*;
-    use crate::neighbors::LANES;
     use crate::simd::lanes::{Entry, Lanes};
     use crate::simd::run::LanePass;
 
@@ -126,14 +133,13 @@ mod lanes {
         }
 
         #[inline(always)]
-        unsafe fn add<F: Lanes, E: Entry>(
+        unsafe fn terms<F: Lanes, E: Entry>(
             &self,
             own: &Self::Own<F>,
-            sums: &mut [F; 4],
             base: usize,
             column: &[E; LANES],
             counted: impl Fn(F) -> F,
-        ) {
+        ) -> [F; 4] {
             // SAFETY: the caller vouches that all rows are within the columns.
             let gather = |from: &[Vector]| unsafe { F::gather_vectors(from.as_ptr().add(base), column) };
             let (other_x, other_y) = gather(self.positions);
@@ -152,10 +158,7 @@ mod lanes {
                 norm = norm * unsafe { F::gather(self.weights.as_ptr().add(base), column) };
             }
             // Padding lies at distance zero: its W must be cleared, its gradient is zero anyway.
-            sums[0] = sums[0] + counted(w);
-            sums[1] = sums[1] + g * x;
-            sums[2] = sums[2] + g * y;
-            sums[3] = sums[3] + norm;
+            [counted(w), g * x, g * y, norm]
         }
     }
 }

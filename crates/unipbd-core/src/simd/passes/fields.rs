@@ -140,22 +140,20 @@ mod lanes {
         }
 
         #[inline(always)]
-        unsafe fn add<F: Lanes, E: Entry>(
+        unsafe fn terms<F: Lanes, E: Entry>(
             &self,
             own: &Self::Own<F>,
-            sums: &mut [F; 2],
             base: usize,
             column: &[E; LANES],
             _counted: impl Fn(F) -> F,
-        ) {
+        ) -> [F; 2] {
             // SAFETY: the caller vouches that all rows are within the columns.
             let (other_x, other_y, other): Self::Own<F> =
                 unsafe { gather_both(self.positions, self.field, base, column) };
             let (x, y) = self.space.shortest(own.0 - other_x, own.1 - other_y);
             let factor = self.kernel.at(x * x + y * y).1 * (other - own.2);
             // Padding lies at distance zero and adds nothing.
-            sums[0] = sums[0] + factor * x;
-            sums[1] = sums[1] + factor * y;
+            [factor * x, factor * y]
         }
     }
 
@@ -171,14 +169,13 @@ mod lanes {
         }
 
         #[inline(always)]
-        unsafe fn add<F: Lanes, E: Entry>(
+        unsafe fn terms<F: Lanes, E: Entry>(
             &self,
             own: &Self::Own<F>,
-            sums: &mut [F; 1],
             base: usize,
             column: &[E; LANES],
             _counted: impl Fn(F) -> F,
-        ) {
+        ) -> [F; 1] {
             // SAFETY: the caller vouches that all rows are within the columns.
             let (other_x, other_y, other): Self::Own<F> =
                 unsafe { gather_both(self.positions, self.field, base, column) };
@@ -189,7 +186,7 @@ mod lanes {
                 g = g * unsafe { F::gather(self.weights.as_ptr().add(base), column) };
             }
             // Padding has no difference of its own and adds nothing.
-            sums[0] = sums[0] + g * (own.2 - other);
+            [g * (own.2 - other)]
         }
     }
 }

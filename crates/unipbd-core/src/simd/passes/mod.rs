@@ -17,8 +17,9 @@ use super::Level;
 use super::run::{self, LanePass};
 use super::shapes::Number;
 use crate::math::{Real, Vector};
-use crate::neighbors::{NeighborList, Periodic};
+use crate::neighbors::{LANES, NeighborList, Periodic};
 use crate::parallel::{CHUNK_ROWS, Parallelism};
+use std::ops::Range;
 
 /// The pairs a pass runs over, and how.
 #[derive(Clone, Copy)]
@@ -45,47 +46,90 @@ impl<'a> Pairs<'a> {
         self.list.rows()
     }
 
-    /// Runs a pass over the rows of one chunk and emits the result of each row under its number in the chunk.
+    /// Runs a pass over the rows of one chunk and stores the results of a block at a time,
+    /// under the numbers of its rows in the chunk.
     #[inline]
     #[cfg_attr(not(feature = "f64"), allow(unsafe_code))]
-    fn run_chunk<P: AnyForm<N>, const N: usize>(
-        &self,
-        pass: &P,
-        first: usize,
-        rows: usize,
-        mut emit: impl FnMut(usize, [Real; N]),
-    ) {
+    fn run_chunk<P: AnyForm<N>, const N: usize>(&self, pass: &P, first: usize, rows: usize, sink: &mut impl Sink<N>) {
         #[cfg(not(feature = "f64"))]
         if self.level != Level::Scalar {
             assert!(pass.shortest_column() >= self.rows() && first + rows <= self.rows());
             let chunk = &self.list.chunks()[first / CHUNK_ROWS];
             // SAFETY: the list takes its entries from row numbers below `rows()`, checked when it was
             // built, and every column of the pass has at least that many rows.
-            unsafe { run::run(self.level, pass, chunk, first, rows, emit) };
+            unsafe { run::run(self.level, pass, chunk, first, rows, sink) };
             return;
         }
         debug_assert_eq!(first % CHUNK_ROWS, 0);
-        for row in 0..rows {
-            emit(row, pass.row(self.list, first + row));
+        for block in (0..rows).step_by(LANES) {
+            let valid = LANES.min(rows - block);
+            let mut sums = [[0.0; LANES]; N];
+            for lane in 0..valid {
+                let row = pass.row(self.list, first + block + lane);
+                sums.iter_mut().zip(row).for_each(|(lanes, value)| lanes[lane] = value);
+            }
+            sink.store(block..block + valid, &sums);
         }
     }
 
     fn fill<P: AnyForm<1>>(&self, pass: &P, out: &mut [Real]) {
         self.check(out.len());
         self.parallelism.chunks(out, |first, out| {
-            self.run_chunk(pass, first, out.len(), |row, [value]: [Real; 1]| out[row] = value);
+            self.run_chunk(pass, first, out.len(), &mut Scalars(out));
         });
     }
 
     fn fill_vectors<P: AnyForm<2>>(&self, pass: &P, out: &mut [Vector]) {
         self.check(out.len());
         self.parallelism.chunks(out, |first, out| {
-            self.run_chunk(pass, first, out.len(), |row, [x, y]: [Real; 2]| out[row] = Vector::new(x, y));
+            self.run_chunk(pass, first, out.len(), &mut Vectors(out));
         });
     }
 
     fn check(&self, rows: usize) {
         assert_eq!(rows, self.rows(), "an output has as many rows as the list");
+    }
+}
+
+/// Where the results of a chunk go. (Not a closure: those are not inlined into the lane forms.)
+pub(super) trait Sink<const N: usize> {
+    /// Stores the results of some rows of the chunk.
+    fn store(&mut self, rows: Range<usize>, results: &[[Real; LANES]; N]);
+}
+
+struct Scalars<'a>(&'a mut [Real]);
+
+impl Sink<1> for Scalars<'_> {
+    #[inline(always)]
+    fn store(&mut self, rows: Range<usize>, [values]: &[[Real; LANES]; 1]) {
+        store(&mut self.0[rows], values);
+    }
+}
+
+struct Vectors<'a>(&'a mut [Vector]);
+
+impl Sink<2> for Vectors<'_> {
+    #[inline(always)]
+    fn store(&mut self, rows: Range<usize>, [x, y]: &[[Real; LANES]; 2]) {
+        store_vectors(&mut self.0[rows], x, y);
+    }
+}
+
+/// Writes the results of a block, which the last block of a set may fill in part.
+#[inline(always)]
+fn store(out: &mut [Real], values: &[Real; LANES]) {
+    match <&mut [Real; LANES]>::try_from(&mut *out) {
+        Ok(whole) => *whole = *values,
+        Err(_) => out.iter_mut().zip(values).for_each(|(slot, &value)| *slot = value),
+    }
+}
+
+/// As [`store`], for vectors.
+#[inline(always)]
+fn store_vectors(out: &mut [Vector], x: &[Real; LANES], y: &[Real; LANES]) {
+    match <&mut [Vector; LANES]>::try_from(&mut *out) {
+        Ok(whole) => *whole = std::array::from_fn(|lane| Vector::new(x[lane], y[lane])),
+        Err(_) => out.iter_mut().zip(x.iter().zip(y)).for_each(|(slot, (&x, &y))| *slot = Vector::new(x, y)),
     }
 }
 

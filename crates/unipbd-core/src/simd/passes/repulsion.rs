@@ -93,14 +93,13 @@ mod lanes {
         }
 
         #[inline(always)]
-        unsafe fn add<F: Lanes, E: Entry>(
+        unsafe fn terms<F: Lanes, E: Entry>(
             &self,
             own: &Self::Own<F>,
-            sums: &mut [F; 2],
             base: usize,
             column: &[E; LANES],
             counted: impl Fn(F) -> F,
-        ) {
+        ) -> [F; 2] {
             // SAFETY: the caller vouches that all rows are within the columns.
             let ((other_x, other_y), offset) = unsafe {
                 let offsets = column.map(|entry| entry.offset() as f32);
@@ -115,8 +114,7 @@ mod lanes {
             }
             let order = own.2.where_below(offset, x.like(-1.0), x.like(1.0));
             let (push_x, push_y) = Self::along(x, y, square, push, order);
-            sums[0] = sums[0] + push_x;
-            sums[1] = sums[1] + push_y;
+            [push_x, push_y]
         }
     }
 }

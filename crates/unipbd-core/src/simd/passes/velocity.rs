@@ -132,14 +132,13 @@ mod lanes {
         }
 
         #[inline(always)]
-        unsafe fn add<F: Lanes, E: Entry>(
+        unsafe fn terms<F: Lanes, E: Entry>(
             &self,
             own: &Self::Own<F>,
-            sums: &mut [F; 2],
             base: usize,
             column: &[E; LANES],
             _counted: impl Fn(F) -> F,
-        ) {
+        ) -> [F; 2] {
             // SAFETY: the caller vouches that all rows are within the columns.
             let ((other_x, other_y), (u, v)): Self::Own<F> =
                 unsafe { gather_both(self.positions, self.velocities, base, column) };
@@ -150,8 +149,7 @@ mod lanes {
                 w = w * unsafe { F::gather(self.weights.as_ptr().add(base), column) };
             }
             // Padding has no velocity of its own and adds nothing.
-            sums[0] = sums[0] + w * (u - own.1.0);
-            sums[1] = sums[1] + w * (v - own.1.1);
+            [w * (u - own.1.0), w * (v - own.1.1)]
         }
     }
 
@@ -167,21 +165,20 @@ mod lanes {
         }
 
         #[inline(always)]
-        unsafe fn add<F: Lanes, E: Entry>(
+        unsafe fn terms<F: Lanes, E: Entry>(
             &self,
             own: &Self::Own<F>,
-            sums: &mut [F; 1],
             base: usize,
             column: &[E; LANES],
             _counted: impl Fn(F) -> F,
-        ) {
+        ) -> [F; 1] {
             // SAFETY: the caller vouches that all rows are within the columns.
             let ((other_x, other_y), (u, v)): Self::Own<F> =
                 unsafe { gather_both(self.positions, self.velocities, base, column) };
             let (x, y) = self.space.shortest(own.0.0 - other_x, own.0.1 - other_y);
             let g = self.kernel.at(x * x + y * y).1;
             // Padding lies at distance zero and adds nothing.
-            sums[0] = sums[0] + g * (x * (v - own.1.1) - y * (u - own.1.0));
+            [g * (x * (v - own.1.1) - y * (u - own.1.0))]
         }
     }
 }
