@@ -33,6 +33,19 @@ position = [0.5, 2.0]
 "#;
 
 #[test]
+fn free_flight_has_two_stages() {
+    let grains = WATER.replace("liquid", "solid");
+    assert_stages(&grains, &[Predict, UpdateVelocities]);
+}
+
+#[test]
+fn grains_between_walls_are_projected_without_neighbours() {
+    let grains = WATER.replace("liquid", "solid");
+    let walled = format!("{grains}[[half_plane]]\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n");
+    assert_stages(&walled, &[Predict, Project, UpdateVelocities]);
+}
+
+#[test]
 fn water_has_neighbours_and_one_projection() {
     assert_stages(WATER, &[Predict, FindNeighbors, BeginGroups, Project, UpdateVelocities]);
 }
@@ -50,16 +63,7 @@ fn bodies_alone_need_no_neighbours_and_no_density() {
 
 #[test]
 fn bodies_in_water_are_solved_before_and_after_the_fluid() {
-    let all = [
-        Predict,
-        Contacts,
-        FindNeighbors,
-        BeginGroups,
-        Project,
-        ContactsAgain,
-        UpdateVelocities,
-        MoveBodies,
-    ];
+    let all = [Predict, Contacts, FindNeighbors, BeginGroups, Project, ContactsAgain, UpdateVelocities, MoveBodies];
     assert_stages(&format!("{WATER}{BALL}"), &all);
 }
 

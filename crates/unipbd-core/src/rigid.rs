@@ -8,8 +8,10 @@ use crate::neighbors::Neighbors;
 use crate::particles::Particles;
 use crate::phase::Phase;
 use crate::rows::RowIndex;
+use crate::walls::Walls;
 
 /// The bodies of a run, their contacts, and the ids of their samples.
+#[derive(Clone, serde::Serialize, serde::Deserialize)]
 pub struct RigidBodies {
     pub(crate) bodies: Bodies,
     pub(crate) contacts: Contacts,
@@ -21,7 +23,7 @@ pub struct RigidBodies {
 }
 
 /// A fluid particle that may be inside a body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 struct Trespasser {
     row: u32,
     body: u32,
@@ -45,13 +47,9 @@ impl RigidBodies {
         self.bodies.views()
     }
 
-    /// Fastest point of any body that moves [m/s].
-    pub(crate) fn speed_max(&self) -> f64 {
-        let speed = |id: usize| {
-            let velocity = self.bodies.velocities[id];
-            velocity.linear.length() + velocity.angular.abs() * self.bodies.reaches[id]
-        };
-        (0..self.bodies.len()).filter(|&id| self.bodies.is_active(id)).map(speed).fold(0.0, f64::max)
+    /// Whether both hold the same bodies, perhaps at different times.
+    pub(crate) fn is_like(&self, other: &RigidBodies) -> bool {
+        self.first_sample == other.first_sample && self.bodies.is_like(&other.bodies)
     }
 
     /// Bodies that may have to carry each other: the height of all that are awake over the smallest.
@@ -123,7 +121,14 @@ impl RigidBodies {
     }
 
     /// Moves fluid particles out of bodies along the nearest face; particle and body share the momentum.
-    pub(crate) fn expel(&mut self, particles: &mut Particles, neighbors: &Neighbors, rows: &RowIndex, dt: f64) {
+    pub(crate) fn expel(
+        &mut self,
+        particles: &mut Particles,
+        neighbors: &Neighbors,
+        walls: &Walls,
+        rows: &RowIndex,
+        dt: f64,
+    ) {
         self.find_trespassers(particles, neighbors, rows);
         for &Trespasser { row, body } in &self.trespassers {
             let (row, pose) = (row as usize, self.bodies.predicted_pose(body));
@@ -134,14 +139,22 @@ impl RigidBodies {
                 continue;
             }
             let normal = Vector64::from_angle(pose.angle).rotate(nearest.normal);
+            let depth = -nearest.distance;
+            // Only what the two have come nearer in this substep becomes velocity.
+            let moved = wide(particles.displacement[row]) - self.bodies.displacement_at(body, arm);
+            let approach = (-moved.dot(normal)).clamp(0.0, depth);
             let response = self.bodies.response(body);
             let lever = arm.perp_dot(normal);
             let own = f64::from(particles.inverse_mass[row]);
-            let impulse = -nearest.distance / (own + response.linear + response.angular * lever * lever);
+            let impulse = approach / (own + response.linear + response.angular * lever * lever);
             particles.displacement[row] += vector(normal * (impulse * own));
-            particles.position[row] = particles.start[row] + (particles.displacement[row] + particles.remainder[row]);
             let force = -normal * impulse / (dt * dt);
             self.bodies.load(body, force, arm.perp_dot(force), dt);
+            let rest = vector(normal * (depth - approach));
+            let place = particles.start[row] + rest + (particles.displacement[row] + particles.remainder[row]);
+            let kept = walls.clamp(place);
+            particles.start[row] += rest + (kept - place);
+            particles.position[row] = kept;
         }
     }
 

@@ -12,31 +12,18 @@ use crate::rng::Rng;
 use crate::rows::RowIndex;
 use crate::scene::{Emitter, Profile, Scene};
 
-/// Particles kept behind the face in each column.
-const ROWS_BEHIND: usize = 3;
-/// Mean compression ahead of the face at which the throttle begins to close.
-const THROTTLE_COMPRESSION: f64 = 0.02;
+use super::saved::{ColumnState, EmitterState, ROWS_BEHIND};
+
+/// Mean compression ahead of the face at which the throttle begins to close; at twice that it is shut.
+const THROTTLE_COMPRESSION: f64 = 0.015;
+/// Way of the flow, in spacings, over which the compression ahead is averaged while it grows...
+const WAY_TO_CLOSE: f64 = 1.0;
+/// ...and while it falls: a nozzle that opens at once again would hammer on what blocks it.
+const WAY_TO_OPEN: f64 = 8.0;
 
 /// All emitters of a scene.
 pub struct EmitterSystem {
     emitters: Vec<Nozzle>,
-}
-
-/// What changes in an emitter while it runs: part of a saved state.
-#[derive(Clone, Debug, PartialEq)]
-pub struct EmitterState {
-    rng: u64,
-    running: bool,
-    throttle: f64,
-    columns: Vec<ColumnState>,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-struct ColumnState {
-    /// Way since the last particle crossed the face, in spacings [0, 1).
-    progress: f64,
-    /// Ids of the particles behind the face, the nearest first.
-    behind: [u32; ROWS_BEHIND],
 }
 
 struct Nozzle {
@@ -108,15 +95,30 @@ impl EmitterSystem {
         self.emitters.iter().any(|nozzle| nozzle.will_change(time, dt))
     }
 
-    /// The changing part of each emitter.
-    pub fn states(&self) -> impl Iterator<Item = &EmitterState> {
-        self.emitters.iter().map(|nozzle| &nozzle.state)
+    /// Number of columns of each emitter.
+    pub fn columns(&self) -> impl Iterator<Item = usize> {
+        self.emitters.iter().map(|nozzle| nozzle.columns.len())
     }
 
-    /// Takes back what [`states`](Self::states) gave.
-    pub fn restore(&mut self, states: &[EmitterState]) {
-        for (nozzle, state) in self.emitters.iter_mut().zip(states) {
-            nozzle.state = state.clone();
+    /// What changes while the emitters run, in words: part of a saved state.
+    pub fn save(&self) -> Vec<u64> {
+        self.emitters.iter().flat_map(|nozzle| nozzle.state.words()).collect()
+    }
+
+    /// Whether [`restore`](Self::restore) would find words it can take.
+    pub fn accepts(&self, words: &[u64]) -> bool {
+        let mut words = words.iter().copied();
+        let read = |columns| EmitterState::from_words(&mut words, columns).is_some();
+        self.columns().all(read) && words.next().is_none()
+    }
+
+    /// Takes back what [`save`](Self::save) gave.
+    pub fn restore(&mut self, words: &[u64]) {
+        let mut words = words.iter().copied();
+        for nozzle in &mut self.emitters {
+            if let Some(state) = EmitterState::from_words(&mut words, nozzle.columns.len()) {
+                nozzle.state = state;
+            }
         }
     }
 }
@@ -152,7 +154,7 @@ impl Nozzle {
             state: EmitterState {
                 rng: rng.state(),
                 running: false,
-                throttle: 1.0,
+                compression: 0.0,
                 columns: vec![still; columns.len()],
             },
             columns,
@@ -165,7 +167,7 @@ impl Nozzle {
 
     fn will_change(&self, time: f64, dt: f64) -> bool {
         let crossing = |(column, state): (&Column, &ColumnState)| {
-            state.progress + column.speed * self.state.throttle * dt / self.spacing >= 1.0
+            state.progress + column.speed * self.state.throttle() * dt / self.spacing >= 1.0
         };
         self.is_active(time) != self.state.running
             || self.state.running && self.columns.iter().zip(&self.state.columns).any(crossing)
@@ -181,7 +183,10 @@ impl Nozzle {
         if !self.state.running {
             return;
         }
-        self.state.throttle = if self.throttled { self.throttle(particles, neighbors) } else { 1.0 };
+        // Where particles were just removed, the rows of the list are gone: the throttle stays.
+        if self.throttled && neighbors.is_current() {
+            self.feel(dt, particles, neighbors);
+        }
         for index in 0..self.columns.len() {
             self.advance_column(index, dt, particles, rows);
         }
@@ -209,7 +214,7 @@ impl Nozzle {
 
     fn advance_column(&mut self, index: usize, dt: f64, particles: &mut Particles, rows: &RowIndex) {
         let column = &self.columns[index];
-        let speed = column.speed * self.state.throttle;
+        let speed = column.speed * self.state.throttle();
         self.state.columns[index].progress += speed * dt / self.spacing;
         while self.state.columns[index].progress >= 1.0 {
             self.state.columns[index].progress -= 1.0;
@@ -252,7 +257,7 @@ impl Nozzle {
             + shift * self.spacing;
         particles.push(NewParticle {
             position: vector(place),
-            velocity: vector(self.direction * (speed * self.state.throttle)),
+            velocity: vector(self.direction * (speed * self.state.throttle())),
             inverse_mass: 0.0,
             material: self.carrier.material,
             phase: self.carrier.phase,
@@ -285,8 +290,17 @@ impl Nozzle {
         shift
     }
 
-    /// Part of the full speed, from the mean compression just ahead of the face.
-    fn throttle(&self, particles: &Particles, neighbors: &Neighbors) -> f64 {
+    /// Takes up the compression ahead of the face, averaged over the way of the flow.
+    fn feel(&mut self, dt: f64, particles: &Particles, neighbors: &Neighbors) {
+        let (felt, now) = (self.state.compression, self.compression_ahead(particles, neighbors));
+        let fastest = self.columns.iter().map(|column| column.speed).fold(0.0, f64::max);
+        let way = if now > felt { WAY_TO_CLOSE } else { WAY_TO_OPEN };
+        let part = (fastest * dt / (way * self.spacing)).min(1.0);
+        self.state.compression = (felt + (now - felt) * part).min(1.0);
+    }
+
+    /// Mean of max(C, 0) just ahead of the face.
+    fn compression_ahead(&self, particles: &Particles, neighbors: &Neighbors) -> f64 {
         let (mut sum, mut count) = (0.0, 0_u32);
         let reach = 1.5 * self.spacing;
         for column in &self.columns {
@@ -299,8 +313,14 @@ impl Nozzle {
                 }
             });
         }
-        let mean = if count > 0 { sum / f64::from(count) } else { 0.0 };
-        (2.0 - mean / THROTTLE_COMPRESSION).clamp(0.0, 1.0)
+        if count > 0 { sum / f64::from(count) } else { 0.0 }
+    }
+}
+
+impl EmitterState {
+    /// Part of the full speed at which the nozzle pushes.
+    fn throttle(&self) -> f64 {
+        (2.0 - self.compression / THROTTLE_COMPRESSION).clamp(0.0, 1.0)
     }
 }
 

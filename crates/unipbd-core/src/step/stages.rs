@@ -7,7 +7,7 @@ use crate::math::{Real, wide};
 use crate::neighbors::Prepared;
 
 /// Speed in spacings per frame beyond which a run has diverged.
-const ABSURD_SPEED: f64 = 1e6;
+pub(crate) const ABSURD_SPEED: f64 = 1e6;
 
 impl World {
     /// One substep: the stages, in order.
@@ -44,17 +44,17 @@ impl World {
         let (parts, clock) = (&mut self.parts, &self.clock);
         let Some(emitters) = &mut parts.emitters else { return };
         let changes = emitters.will_change(clock.time, clock.dt);
-        emitters.advance(clock.time, clock.dt, &mut parts.particles, &self.rows, &parts.neighbors);
-        if changes {
+        let added = emitters.advance(clock.time, clock.dt, &mut parts.particles, &self.rows, &parts.neighbors);
+        // The throttle may have opened since `changes` was asked for.
+        if changes || added > 0 {
             self.population_changed();
         }
     }
 
     fn predict(&mut self) {
         let parts = &mut self.parts;
-        let extra = (self.extra.len() == parts.particles.len() && !self.extra.is_empty()).then_some(&self.extra[..]);
-        integrate::predict(&mut parts.particles, &parts.forces, extra, self.clock.dt as Real, parts.parallelism);
-        self.extra.clear();
+        integrate::predict(&mut parts.particles, &parts.forces, self.clock.dt as Real, parts.parallelism);
+        parts.particles.clear_accelerations();
     }
 
     fn predict_bodies(&mut self) {
@@ -125,7 +125,7 @@ impl World {
         if let Some(rigid) = &mut parts.rigid {
             rigid.take_loads(self.corrections.loads(), &parts.particles, &self.rows, self.clock.dt);
             if self.stages.contains(&Stage::FindNeighbors) {
-                rigid.expel(&mut parts.particles, &parts.neighbors, &self.rows, self.clock.dt);
+                rigid.expel(&mut parts.particles, &parts.neighbors, &parts.walls, &self.rows, self.clock.dt);
             }
         }
     }

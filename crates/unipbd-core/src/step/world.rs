@@ -10,7 +10,7 @@ use super::{FrameReport, SolverError, Stage};
 use crate::constraints::{ConstraintGroup, Corrections, Needs, Substep};
 use crate::effects::{Changes, Effect, SmokeAdvection};
 use crate::math::{Real, Vector, wide};
-use crate::neighbors::{Cover, Neighbors};
+use crate::neighbors::{Cover, Neighbors, SavedList};
 use crate::observe::{Event, Material, Severity};
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
@@ -43,6 +43,11 @@ pub(crate) struct Parts {
     pub parallelism: Parallelism,
 }
 
+/// Pressures up to this many times what depth and speed account for are believed.
+const PRESSURE_MARGIN: f64 = 8.0;
+/// Speed, in spacings per frame, that a compressed liquid may always reach.
+const LEAST_SPEED: f64 = 2.0;
+
 /// Where a run is.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Clock {
@@ -52,11 +57,31 @@ pub(crate) struct Clock {
     /// Length of the last substep [s].
     pub dt: f64,
     pub substeps: u32,
+    /// Substeps done of a frame that an error interrupted.
+    pub done: u32,
     pub list_builds: u32,
+    /// Largest pressure over density that a liquid may push with [m^2/s^2].
+    pub pressure_limit: f64,
+    /// Whether the last frame was denied substeps.
+    pub capped: bool,
     /// Fastest dense particle after the last substep [m/s].
     pub speed: f64,
     /// Advances whenever particles are added or removed.
     pub generation: u64,
+}
+
+/// Where a frame began.
+pub(crate) struct Begun {
+    removed: u64,
+    ids: u32,
+    builds: u64,
+}
+
+/// Whether the rows are still those of the same particles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Population {
+    Same,
+    Changed,
 }
 
 /// A run.
@@ -69,13 +94,10 @@ pub(crate) struct World {
     pub timings: Timings,
     /// Density errors at the positions of the last frame, once somebody asks for them.
     pub(super) measured: OnceLock<Vec<Real>>,
-    /// Accelerations by row that a user added for the next substep [m/s^2].
-    pub extra: Vec<Vector>,
     pub(super) corrections: Corrections,
     pub(super) changes: Changes,
     removed: Vec<u32>,
     pub(super) needs_rows: bool,
-    capped: bool,
 }
 
 impl World {
@@ -88,12 +110,10 @@ impl World {
             events: Vec::new(),
             timings: Timings::default(),
             measured: OnceLock::new(),
-            extra: Vec::new(),
             corrections: Corrections::default(),
             changes: Changes::default(),
             removed: Vec::new(),
             needs_rows: false,
-            capped: false,
         };
         world.plan();
         world
@@ -132,35 +152,84 @@ impl World {
         self.index_rows();
     }
 
-    /// One frame.
-    pub fn frame(&mut self, mut hook: impl FnMut(&mut World)) -> Result<FrameReport, SolverError> {
-        self.measured = OnceLock::new();
-        let removed = self.remove();
-        let ids_before = self.parts.particles.ids_given();
-        let builds_before = self.parts.neighbors.builds();
-        let substeps = self.choose_substeps();
-        let start = self.clock.frame as f64 * self.parts.frame_time;
-        self.clock.dt = self.parts.frame_time / f64::from(substeps);
-        self.clock.substeps = substeps;
-        for substep in 0..substeps {
-            self.clock.time = start + f64::from(substep) * self.clock.dt;
-            hook(self);
-            self.substep()?;
-            self.clock.step += 1;
+    /// One frame, or the rest of one that an error interrupted.
+    pub fn frame(&mut self) -> Result<FrameReport, SolverError> {
+        let begun = self.begin_frame();
+        while self.begin_substep() {
+            self.finish_substep()?;
         }
+        Ok(self.end_frame(begun))
+    }
+
+    /// Removes what is to go and decides how many substeps the frame takes.
+    pub fn begin_frame(&mut self) -> Begun {
+        self.measured = OnceLock::new();
+        let mut removed = 0;
+        if self.clock.done == 0 {
+            removed = self.remove();
+            self.clock.substeps = self.choose_substeps();
+            self.clock.pressure_limit = self.pressure_limit();
+            self.clock.dt = self.parts.frame_time / f64::from(self.clock.substeps);
+        }
+        Begun { removed, ids: self.parts.particles.ids_given(), builds: self.parts.neighbors.builds() }
+    }
+
+    /// Sets the clock to the next substep; false when the frame is done.
+    pub fn begin_substep(&mut self) -> bool {
+        let start = self.clock.frame as f64 * self.parts.frame_time;
+        self.clock.time = start + f64::from(self.clock.done) * self.clock.dt;
+        self.clock.done < self.clock.substeps
+    }
+
+    /// The stages of the substep.
+    pub fn finish_substep(&mut self) -> Result<(), SolverError> {
+        self.substep()?;
+        self.clock.step += 1;
+        self.clock.done += 1;
+        Ok(())
+    }
+
+    /// Sets the clock to the end of the frame.
+    pub fn end_frame(&mut self, begun: Begun) -> FrameReport {
         if let Some(rigid) = &mut self.parts.rigid {
             rigid.finish_frame(self.parts.frame_time);
         }
+        self.clock.done = 0;
         self.clock.frame += 1;
         self.clock.time = self.clock.frame as f64 * self.parts.frame_time;
-        self.clock.list_builds = (self.parts.neighbors.builds() - builds_before) as u32;
-        let emitted = u64::from(self.parts.particles.ids_given() - ids_before);
-        Ok(FrameReport { substeps, list_builds: self.clock.list_builds, emitted, removed })
+        self.clock.list_builds = (self.parts.neighbors.builds() - begun.builds) as u32;
+        FrameReport {
+            substeps: self.clock.substeps,
+            list_builds: self.clock.list_builds,
+            emitted: u64::from(self.parts.particles.ids_given() - begun.ids),
+            removed: begun.removed,
+        }
+    }
+
+    /// Makes the list of a saved state again, and forgets what was measured before.
+    pub fn restore_list(&mut self, list: &SavedList) {
+        self.measured = OnceLock::new();
+        self.parts.neighbors.restore(&self.parts.particles, list, self.parts.parallelism);
+        self.index_rows();
+    }
+
+    /// Rows were edited between two frames: speeds, ids and lists are found again.
+    pub fn edited(&mut self, population: Population) {
+        self.measured = OnceLock::new();
+        if population == Population::Changed {
+            self.population_changed();
+        }
+        self.clock.speed = self.fastest();
+        self.parts.particles.start_here();
+        if self.stages.contains(&Stage::FindNeighbors) {
+            self.find_neighbors();
+        }
     }
 
     /// Brings the start to its rest density: projection without gravity and without velocity.
     pub fn settle(&mut self, substeps: u32) {
         self.clock.dt = self.parts.frame_time;
+        self.clock.pressure_limit = self.pressure_limit();
         if self.parts.particles.dense() > 0 {
             (0..substeps).for_each(|_| self.hold_still());
         }
@@ -176,6 +245,7 @@ impl World {
         Substep {
             dt: clock.dt as Real,
             time: clock.time,
+            pressure_limit: clock.pressure_limit as Real,
             particles: &parts.particles,
             rows,
             neighbors: &parts.neighbors,
@@ -199,7 +269,7 @@ impl World {
         let demand = self.demand();
         let choice = self.parts.substeps.choose(self.parts.frame_time, demand);
         let capped = choice.wanted > choice.substeps;
-        if capped && !self.capped {
+        if capped && !self.clock.capped {
             let message = format!(
                 "substeps capped at {}: {} were wanted for speed {:.3} m/s and pressure {:.3} m^2/s^2; \
                  raise solver.max_substeps to keep the target",
@@ -207,7 +277,7 @@ impl World {
             );
             self.events.push(Event { time: self.clock.time, severity: Severity::Warning, message });
         }
-        self.capped = capped;
+        self.clock.capped = capped;
         choice.substeps
     }
 
@@ -245,18 +315,40 @@ impl World {
         if depth.is_finite() { f64::from(gravity) * depth * self.density_ratio() } else { 0.0 }
     }
 
-    /// Largest pressure over density of a liquid after the last substep, lambda w/dt^2 [m^2/s^2].
+    /// Pressure over density of the liquids after the last substep [m^2/s^2]: the largest one if it
+    /// grows linearly with depth, taken from the mean square, so that a few particles squeezed in
+    /// somewhere do not decide for all.
     fn multiplier_pressure(&self) -> f64 {
         if self.clock.step == 0 {
             return 0.0;
         }
         let particles = &self.parts.particles;
-        let pressure = |row: usize| match particles.phase[row] {
-            Phase::Liquid => particles.multiplier[row] * particles.inverse_mass[row],
-            _ => 0.0,
-        };
-        let largest = self.parts.parallelism.max(particles.dense(), pressure).max(0.0);
-        f64::from(largest) / (self.clock.dt * self.clock.dt)
+        let (sum, count) = self.over_liquids(|row| {
+            let pressure = f64::from(particles.multiplier[row] * particles.inverse_mass[row]);
+            pressure * pressure
+        });
+        (3.0 * sum / count.max(1.0)).sqrt() / (self.clock.dt * self.clock.dt)
+    }
+
+    /// The pressure that a liquid as deep and as fast as this one can reach, with a wide margin
+    /// [m^2/s^2]. The speed is the fourth root of the mean fourth power: jets count, single drops do not.
+    fn pressure_limit(&self) -> f64 {
+        let velocities = &self.parts.particles.velocity;
+        let (sum, count) = self.over_liquids(|row| {
+            let square = f64::from(velocities[row].length_squared());
+            square * square
+        });
+        let dynamic = 0.5 * (sum / count.max(1.0)).sqrt();
+        let least = LEAST_SPEED * self.parts.spacing / self.parts.frame_time;
+        PRESSURE_MARGIN * (self.depth_pressure() + dynamic) + least * least
+    }
+
+    /// Sum of a value over the liquid particles, and their number.
+    fn over_liquids(&self, value: impl Fn(usize) -> f64 + Sync) -> (f64, f64) {
+        let particles = &self.parts.particles;
+        let liquid = |row: usize| particles.phase[row] == Phase::Liquid;
+        let sum = self.parts.parallelism.sum(particles.dense(), |row| if liquid(row) { value(row) } else { 0.0 });
+        (sum, self.parts.parallelism.sum(particles.dense(), |row| f64::from(u8::from(liquid(row)))))
     }
 
     /// Density of the heaviest liquid over that of the lightest: a light liquid carries a heavy one.

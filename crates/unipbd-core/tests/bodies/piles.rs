@@ -121,7 +121,7 @@ fn settled_discs_hardly_overlap() {
 /// 5000 bodies falling into a tank; times are printed, for a look and not for a bar.
 fn settle_5000(shape: impl Fn(u32) -> Shape) {
     let mut world = World::new(&Wall::tank(at(0.0, 0.0), at(50.0, 200.0), Surface::default()));
-    world.substeps = 8;
+    world.substeps = 16;
     for k in 0..5000u32 {
         let jitter = 0.05 * (f64::from(k) * 12.9898).sin();
         let place = at(0.4 + 0.6 * f64::from(k % 82) + jitter, 0.3 + 0.6 * f64::from(k / 82));

@@ -125,7 +125,7 @@ fn star_rests_on_two_points_in_a_concave_wall() {
         (-5.0, 20.0),
     ];
     let wall = Wall::polygon(valley.iter().map(|&(x, y)| at(x, y)).collect(), Surface::default());
-    let mut world = World::new(&[wall.clone()]);
+    let mut world = World::new(std::slice::from_ref(&wall));
     for k in 0..6 {
         world.add(body(star(5), at(-2.0 + 0.8 * f64::from(k), 4.0 + 2.2 * f64::from(k)), Surface::default()));
         world.add(body(

@@ -18,8 +18,8 @@ impl Density {
                 GradientPoint::Start => Some(now.particles.starts()),
             },
             weights: match self.settings.uniform_inverse_mass {
-                Some(inverse_mass) => Weights::Uniform(inverse_mass),
-                None => Weights::Column(now.particles.inverse_masses()),
+                Some(inverse_mass) if !now.particles.any_scripted() => Weights::Uniform(inverse_mass),
+                _ => Weights::Column(now.particles.inverse_masses()),
             },
         };
         let sums = &mut self.sums;
@@ -50,13 +50,14 @@ impl Density {
         let (errors, walls) = (&self.error, &self.wall_gradient);
         let inverse_masses = now.particles.inverse_masses();
         let material_of = now.particles.materials();
+        let limit = now.pressure_limit * now.dt * now.dt;
         now.parallelism.chunks2(&mut self.step, &mut self.multiplier, |first, steps, multipliers| {
             for k in 0..steps.len() {
                 let i = first + k;
                 let gradient = sums.gradient[i] * volume + walls[i];
                 let response = inverse_masses[i] * gradient.length_squared() + volume * volume * sums.response[i];
                 let material = &materials[usize::from(material_of[i])];
-                let new = material.multiplier(multipliers[k], errors[i], response, inverse_masses[i]);
+                let new = material.multiplier(multipliers[k], errors[i], response, inverse_masses[i], limit);
                 steps[k] = new - multipliers[k];
                 multipliers[k] = new;
             }
@@ -127,15 +128,17 @@ impl Density {
 }
 
 impl DensityMaterial {
-    /// The multiplier after one relaxed step.
+    /// The multiplier after one relaxed step. `limit` is the largest pressure over density times dt^2.
     #[inline]
-    fn multiplier(&self, old: Real, error: Real, response: Real, inverse_mass: Real) -> Real {
+    fn multiplier(&self, old: Real, error: Real, response: Real, inverse_mass: Real, limit: Real) -> Real {
         if error < self.gate || self.relaxation == 0.0 {
             return old;
         }
         // A particle moved by a script may push, never pull: its own response is missing from the
         // denominator.
         let least = if inverse_mass == 0.0 { 0.0 } else { self.multiplier_min };
-        (old + self.relaxation * error / response.max(self.response_min)).max(least)
+        let new = (old + self.relaxation * error / response.max(self.response_min)).max(least);
+        // What is squeezed in with no way out must not push harder the shorter the substep is.
+        if self.multiplier_min == 0.0 && inverse_mass > 0.0 { new.min(limit / inverse_mass) } else { new }
     }
 }
