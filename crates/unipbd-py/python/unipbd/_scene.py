@@ -409,7 +409,7 @@ class Scene:
     def to_dict(self) -> dict[str, Any]:
         """A copy as nested dicts and lists."""
         data: dict[str, Any] = plain(copy.deepcopy(self._data))
-        return data
+        return {key: value for key, value in data.items() if value != []}
 
     def copy(self) -> Scene:
         """An independent copy."""
