@@ -17,6 +17,7 @@ pub mod bodies;
 mod build;
 pub mod constraints;
 pub mod effects;
+mod expect;
 pub mod kernel;
 pub mod math;
 pub mod neighbors;
@@ -36,6 +37,7 @@ pub mod step;
 pub mod walls;
 
 pub use build::BuildOptions;
+pub use expect::Watch;
 pub use math::{Real, Vector, Vector64};
 pub use phase::{MaterialIndex, Phase};
 pub use step::{FrameReport, Solver, SolverError, Stage};

@@ -1,7 +1,9 @@
 //! Where particles come from and where they go: emitters and removal rules.
 
 mod emitter;
+mod injector;
 mod removal;
+mod sink;
 
 pub use emitter::EmitterSystem;
 pub use removal::RemovalRules;

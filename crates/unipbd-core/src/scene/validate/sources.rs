@@ -31,8 +31,8 @@ pub(super) fn check(checker: &mut Checker) {
         check_filling(checker, &path, disc.velocity, disc.jitter);
     }
     check_emitters(checker);
-    if scene.block.is_empty() && scene.disc.is_empty() && scene.emitter.is_empty() {
-        let message = "the scene has no particles: neither [[block]] nor [[disc]] nor [[emitter]]";
+    if scene.block.is_empty() && scene.disc.is_empty() && scene.emitter.is_empty() && scene.body.is_empty() {
+        let message = "the scene has no particles: neither [[block]] nor [[disc]], [[emitter]] or [[body]]";
         checker.problem(KeyPath::default(), message, "add a [[block]] with material, min and max, and its [[liquid]]");
     }
 }
