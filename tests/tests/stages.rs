@@ -26,6 +26,14 @@ min = [0.0, 0.0]
 max = [1.0, 1.0]
 "#;
 
+const GRAINS: &str = r#"
+[[solid]]
+name = "grain"
+[[points]]
+material = "grain"
+positions = [[0.0, 1.0], [0.5, 1.0], [1.0, 1.5]]
+"#;
+
 const BALL: &str = r#"
 [[body]]
 radius = 0.3
@@ -34,14 +42,12 @@ position = [0.5, 2.0]
 
 #[test]
 fn free_flight_has_two_stages() {
-    let grains = WATER.replace("liquid", "solid");
-    assert_stages(&grains, &[Predict, UpdateVelocities]);
+    assert_stages(GRAINS, &[Predict, UpdateVelocities]);
 }
 
 #[test]
 fn grains_between_walls_are_projected_without_neighbours() {
-    let grains = WATER.replace("liquid", "solid");
-    let walled = format!("{grains}[[half_plane]]\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n");
+    let walled = format!("{GRAINS}[[half_plane]]\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n");
     assert_stages(&walled, &[Predict, Project, UpdateVelocities]);
 }
 
