@@ -3,7 +3,7 @@
 mod bodies;
 
 use crate::constraints::{ConstraintGroup, Density, DensitySettings};
-use crate::effects::{Conduction, Drag, Effect, SmokeAdvection, Viscosity, VorticityConfinement};
+use crate::effects::{Conduction, Drag, Effect, ShearViscosity, SmokeAdvection, Viscosity, VorticityConfinement};
 use crate::math::{Vector, Vector64, real, vector};
 use crate::neighbors::{Cover, Neighbors, Periodic, PeriodicAxis};
 use crate::observe::Material;
@@ -60,7 +60,7 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     let settings = DensitySettings::new(scene);
     let effects = effects(scene, seed);
     let cover = match settings.gradients {
-        GradientPoint::Start => Cover::StartAndPredicted,
+        GradientPoint::Start | GradientPoint::Middle => Cover::StartAndPredicted,
         GradientPoint::Predicted => Cover::Predicted,
     };
     let least_skin = if effects.is_empty() && scene.smoke.is_empty() { 0.0 } else { LEAST_SKIN * scene.spacing };
@@ -105,6 +105,9 @@ fn groups(scene: &Scene, density: DensitySettings) -> Vec<Box<dyn ConstraintGrou
 fn effects(scene: &Scene, seed: u64) -> Vec<Box<dyn Effect>> {
     let mut effects: Vec<Box<dyn Effect>> = Vec::new();
     if let Some(viscosity) = Viscosity::new(scene) {
+        effects.push(Box::new(viscosity));
+    }
+    if let Some(viscosity) = ShearViscosity::new(scene) {
         effects.push(Box::new(viscosity));
     }
     if let Some(drag) = Drag::new(scene, Rng::new(seed, WIND_STREAM).state()) {

@@ -4,6 +4,7 @@
 mod conduction;
 mod confinement;
 mod drag;
+mod shear_viscosity;
 mod smoke;
 mod viscosity;
 mod wind;
@@ -11,6 +12,7 @@ mod wind;
 pub use conduction::Conduction;
 pub use confinement::VorticityConfinement;
 pub use drag::Drag;
+pub use shear_viscosity::ShearViscosity;
 pub use smoke::SmokeAdvection;
 pub use viscosity::Viscosity;
 pub use wind::Wind;

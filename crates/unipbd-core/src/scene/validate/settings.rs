@@ -69,6 +69,10 @@ fn check_solver(checker: &mut Checker) {
     let target = solver.target_compression;
     let hint = "a fraction: 0.01 aims at 1 % compression";
     checker.range(path("target_compression"), target, Allowed::Between(1e-6, 0.5), hint);
+    let mixing = solver.constraint_mixing;
+    checker.range(path("constraint_mixing"), mixing, Allowed::Between(0.0, 10.0), "the default is 0");
+    let pressure = solver.artificial_pressure;
+    checker.range(path("artificial_pressure"), pressure, Allowed::Between(0.0, 1.0), "the default is 0");
     if let Some(relaxation) = solver.relaxation {
         let hint = "0.5 suits liquids, 0.4 gas";
         if checker.range(path("relaxation"), relaxation, Allowed::Positive, hint) {
