@@ -15,7 +15,9 @@
 
 pub mod bodies;
 mod build;
+mod bytes;
 pub mod constraints;
+pub mod edit;
 pub mod effects;
 pub mod kernel;
 pub mod math;
@@ -31,11 +33,13 @@ pub mod scene;
 pub mod shapes;
 pub mod simd;
 mod sources;
-mod state;
+pub mod state;
 pub mod step;
 pub mod walls;
 
 pub use build::BuildOptions;
+pub use edit::{Edit, EditError};
 pub use math::{Real, Vector, Vector64};
 pub use phase::{MaterialIndex, Phase};
-pub use step::{FrameReport, Solver, SolverError, Stage};
+pub use state::{State, StateError};
+pub use step::{FrameReport, Solver, SolverError, Stage, SubstepView};

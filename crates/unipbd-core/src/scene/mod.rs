@@ -9,8 +9,10 @@ mod estimate;
 mod layout;
 mod materials;
 mod nearest;
+mod points;
 mod problem;
 mod settings;
+mod shorthand;
 mod sources;
 mod validate;
 mod walls;
@@ -20,11 +22,13 @@ pub use bodies::{
 };
 pub use description::{Domain, Environment, Scene, View};
 pub use estimate::{BYTES_PER_PARTICLE, Estimate, SECONDS_PER_PARTICLE_AND_SUBSTEP};
-pub use materials::{Gas, Liquid, LiquidSurface, MaterialRef, Smoke};
+pub use materials::{Gas, Liquid, LiquidSurface, MaterialRef, Smoke, Solid};
 pub use nearest::nearest;
+pub use points::{PointMotion, Points};
 pub use problem::{KeyPath, KeySegment, Problem, Problems};
 pub use settings::{GradientPoint, KernelKind, SolverSettings, Substeps};
 pub use sources::{Block, Disc, Emitter, Profile, Sheath, SmokeSource};
 pub use walls::{HalfPlane, Obstacle, Side, Slip, Tank};
 
 pub(crate) use layout::{block_points, disc_points};
+pub(crate) use validate::FARTHEST;

@@ -12,8 +12,11 @@ pub struct SolverSettings {
     pub max_substeps: u32,
     /// Target of `"auto"` for the largest compression of a liquid, as a fraction.
     pub target_compression: f64,
-    /// Constraint iterations per substep.
+    /// Constraint iterations per substep; with a tolerance, the most.
     pub iterations: u32,
+    /// The iteration ends once no constraint is violated by more; 0 runs all iterations. A density
+    /// error is a fraction.
+    pub tolerance: f64,
     /// Kernel radius h in spacings.
     pub kernel_radius: f64,
     /// Where density gradients are evaluated; left out, `start` with gas and `predicted` without.
@@ -39,6 +42,7 @@ impl Default for SolverSettings {
             max_substeps: 256,
             target_compression: 0.01,
             iterations: 1,
+            tolerance: 0.0,
             kernel_radius: 2.5,
             gradients: None,
             relaxation: None,

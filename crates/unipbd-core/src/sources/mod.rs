@@ -2,6 +2,7 @@
 
 mod emitter;
 mod removal;
+mod saved;
 
 pub use emitter::EmitterSystem;
 pub use removal::RemovalRules;

@@ -32,7 +32,7 @@ impl Rule {
                 keep_age: real(gas.keep_age),
             },
             MaterialRef::Smoke(smoke) => Rule { lifetime: lifetime(smoke.lifetime), ..Rule::never() },
-            MaterialRef::Liquid(_) | MaterialRef::Rigid => Rule::never(),
+            MaterialRef::Liquid(_) | MaterialRef::Solid(_) | MaterialRef::Rigid => Rule::never(),
         }
     }
 

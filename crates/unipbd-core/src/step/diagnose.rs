@@ -1,7 +1,8 @@
 //! Diagnostics: sums and extremes over the state, computed when asked for.
 
-use super::Solver;
 use super::world::World;
+use super::{Solver, Stage};
+use crate::bodies::BodyKind;
 use crate::math::{Real, Vector64, wide};
 use crate::observe::{Diagnostics, GroupDiagnostics, MaterialDiagnostics};
 use crate::phase::Phase;
@@ -31,17 +32,22 @@ impl Sums {
 impl Solver {
     /// The state in numbers.
     pub fn diagnostics(&self) -> Diagnostics {
-        let world = &self.world;
-        let (clock, sums) = (&world.clock, world.sums());
-        let materials = world.material_diagnostics();
-        let fluids = || materials.iter().zip(&world.parts.materials).filter(|(_, material)| material.phase.is_fluid());
+        self.look_on_threads(World::diagnostics)
+    }
+}
+
+impl World {
+    fn diagnostics(&self) -> Diagnostics {
+        let (clock, sums) = (&self.clock, self.sums().join(self.body_sums()));
+        let materials = self.material_diagnostics();
+        let fluids = || materials.iter().zip(&self.parts.materials).filter(|(_, material)| material.phase.is_fluid());
         let fluid_count: u64 = fluids().map(|(diagnostics, _)| diagnostics.count).sum();
         let weighted: f64 = fluids().map(|(d, _)| d.density_error_mean * d.count as f64).sum();
         let mut count_by_phase = [0; Phase::ALL.len()];
-        for (diagnostics, material) in materials.iter().zip(&world.parts.materials) {
+        for (diagnostics, material) in materials.iter().zip(&self.parts.materials) {
             count_by_phase[material.phase as usize] += diagnostics.count;
         }
-        let groups = world.parts.groups.iter().filter_map(|group| {
+        let groups = self.parts.groups.iter().filter_map(|group| {
             Some(GroupDiagnostics { name: group.name().to_owned(), violation: group.violation()? })
         });
         Diagnostics {
@@ -49,27 +55,33 @@ impl Solver {
             frame: clock.frame,
             step: clock.step,
             substeps: clock.substeps,
-            iterations: clock.substeps * world.parts.iterations,
+            substeps_wanted: self.choice.wanted,
+            substeps_reason: self.choice.reason,
+            iterations: self.iterated,
             list_builds: clock.list_builds,
             count_by_phase,
             density_error_mean: if fluid_count > 0 { weighted / fluid_count as f64 } else { 0.0 },
             density_error_max: fluids().map(|(d, _)| d.density_error_max).fold(0.0, f64::max),
             density_error_min: fluids().map(|(d, _)| d.density_error_min).fold(0.0, f64::min),
-            pressure_max: world.pressure_max(),
+            pressure_max: self.pressure_max(),
             kinetic_energy: sums.kinetic,
             potential_energy: sums.potential,
             momentum: sums.momentum,
             angular_momentum: sums.angular,
             speed_max: sums.speed_squared.sqrt(),
+            contact_penetration: self.contact_penetration(),
             groups: groups.collect(),
             materials,
         }
     }
-}
 
-impl World {
     /// Density errors at the present positions by row; measured when first asked for.
     pub(super) fn density_errors(&self) -> &[Real] {
+        let searches = self.stages.contains(&Stage::FindNeighbors);
+        if searches && !self.parts.neighbors.is_current() {
+            // Within a frame that an error interrupted there may be no list: the last substep's must do.
+            return &self.parts.particles.density_error;
+        }
         self.measured.get_or_init(|| {
             let now = World::now(&self.parts, &self.rows, &self.clock);
             let measured = self.parts.groups.iter().find_map(|group| group.measure_density(now));
@@ -77,8 +89,31 @@ impl World {
         })
     }
 
+    fn body_sums(&self) -> Sums {
+        let gravity = wide(self.parts.gravity);
+        let bodies = self.parts.rigid.as_ref().map_or(&[][..], |rigid| rigid.views());
+        let moving = bodies.iter().filter(|body| body.kind == BodyKind::Dynamic);
+        moving.fold(Sums::default(), |sums, body| {
+            let (x, v, spin) = (body.position, body.velocity, body.angular_velocity);
+            // A body that never turns may have an infinite moment of inertia.
+            let turning = if spin == 0.0 { 0.0 } else { body.inertia * spin };
+            sums.join(Sums {
+                kinetic: 0.5 * (body.mass * v.length_squared() + turning * spin),
+                potential: -body.mass * gravity.dot(x),
+                momentum: v * body.mass,
+                angular: body.mass * x.perp_dot(v) + turning,
+                speed_squared: 0.0,
+            })
+        })
+    }
+
+    fn contact_penetration(&self) -> f64 {
+        let Some(rigid) = &self.parts.rigid else { return 0.0 };
+        rigid.contacts.points().map(|point| -point.gap).fold(0.0, f64::max)
+    }
+
     fn sums(&self) -> Sums {
-        let (particles, gravity) = (&self.parts.particles, wide(self.parts.gravity));
+        let (particles, forces) = (&self.parts.particles, &self.parts.forces);
         let leaf = |rows: std::ops::Range<usize>| {
             rows.fold(Sums::default(), |sums, row| {
                 let inverse_mass = f64::from(particles.inverse_mass[row]);
@@ -86,9 +121,12 @@ impl World {
                     return sums;
                 }
                 let (x, v, mass) = (wide(particles.position[row]), wide(particles.velocity[row]), 1.0 / inverse_mass);
+                // A force that follows the temperature has no potential.
+                let force = &forces[usize::from(particles.material[row])];
+                let acceleration = if force.thermal { Vector64::ZERO } else { wide(force.acceleration) };
                 sums.join(Sums {
                     kinetic: 0.5 * mass * v.length_squared(),
-                    potential: -mass * gravity.dot(x),
+                    potential: -mass * acceleration.dot(x),
                     momentum: v * mass,
                     angular: mass * x.perp_dot(v),
                     speed_squared: v.length_squared(),

@@ -3,11 +3,12 @@
 use super::integrate;
 use super::world::World;
 use super::{SolverError, Stage};
+use crate::constraints::ConstraintGroup;
 use crate::math::{Real, wide};
 use crate::neighbors::Prepared;
 
 /// Speed in spacings per frame beyond which a run has diverged.
-const ABSURD_SPEED: f64 = 1e6;
+pub(crate) const ABSURD_SPEED: f64 = 1e6;
 
 impl World {
     /// One substep: the stages, in order.
@@ -52,9 +53,8 @@ impl World {
 
     fn predict(&mut self) {
         let parts = &mut self.parts;
-        let extra = (self.extra.len() == parts.particles.len() && !self.extra.is_empty()).then_some(&self.extra[..]);
-        integrate::predict(&mut parts.particles, &parts.forces, extra, self.clock.dt as Real, parts.parallelism);
-        self.extra.clear();
+        integrate::predict(&mut parts.particles, &parts.forces, self.clock.dt as Real, parts.parallelism);
+        parts.particles.clear_accelerations();
     }
 
     fn predict_bodies(&mut self) {
@@ -103,6 +103,12 @@ impl World {
                 self.reset_corrections();
                 group.project(World::now(&self.parts, &self.rows, &self.clock), &mut self.corrections);
                 self.take_up_corrections();
+            }
+            self.iterated += 1;
+            // A violation is that of the positions the iteration started from.
+            let within = |group: &dyn ConstraintGroup| group.violation().unwrap_or(0.0) <= self.parts.tolerance;
+            if self.parts.tolerance > 0.0 && groups.iter().all(|group| within(group.as_ref())) {
+                break;
             }
         }
         for columns in groups.iter().filter_map(|group| group.density()) {

@@ -62,6 +62,8 @@ fn check_solver(checker: &mut Checker) {
         Allowed::Between(1.0, 1000.0),
         "one is best; raise `substeps` for accuracy",
     );
+    let tolerance = solver.tolerance;
+    checker.range(path("tolerance"), tolerance, Allowed::NotNegative, "0.01 stops at 1 % compression; 0 never stops");
     let settle = f64::from(solver.settle_substeps);
     checker.range(path("settle_substeps"), settle, Allowed::Between(0.0, 100_000.0), "the default is 40");
     let radius = solver.kernel_radius;
