@@ -7,7 +7,9 @@ mod waves;
 pub(crate) use bodies::{body_copies, body_names, shape as body_shape};
 
 use crate::constraints::{ConstraintGroup, Density, DensitySettings};
-use crate::effects::{Conduction, Drag, Effect, Heating, SmokeAdvection, Viscosity, VorticityConfinement};
+use crate::effects::{
+    Conduction, Drag, Effect, Heating, ShearViscosity, SmokeAdvection, Viscosity, VorticityConfinement,
+};
 use crate::math::{Vector, Vector64, real, vector};
 use crate::neighbors::{Cover, Neighbors, Periodic, PeriodicAxis};
 use crate::observe::Material;
@@ -64,7 +66,7 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     let settings = DensitySettings::new(scene);
     let effects = effects(scene, seed);
     let cover = match settings.gradients {
-        GradientPoint::Start => Cover::StartAndPredicted,
+        GradientPoint::Start | GradientPoint::Middle => Cover::StartAndPredicted,
         GradientPoint::Predicted => Cover::Predicted,
     };
     let least_skin = if effects.is_empty() && scene.smoke.is_empty() { 0.0 } else { LEAST_SKIN * scene.spacing };
@@ -90,6 +92,7 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         removal,
         substeps: SubstepRule::new(scene),
         iterations: scene.solver.iterations,
+        tolerance: scene.solver.tolerance,
         gravity: vector(scene.gravity.into()),
         spacing: scene.spacing,
         frame_time: 1.0 / scene.fps,
@@ -109,6 +112,9 @@ fn groups(scene: &Scene, density: DensitySettings) -> Vec<Box<dyn ConstraintGrou
 fn effects(scene: &Scene, seed: u64) -> Vec<Box<dyn Effect>> {
     let mut effects: Vec<Box<dyn Effect>> = Vec::new();
     if let Some(viscosity) = Viscosity::new(scene) {
+        effects.push(Box::new(viscosity));
+    }
+    if let Some(viscosity) = ShearViscosity::new(scene) {
         effects.push(Box::new(viscosity));
     }
     if let Some(drag) = Drag::new(scene, Rng::new(seed, WIND_STREAM).state()) {

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use super::integrate::BodyForce;
 use super::pipeline::{Features, pipeline};
-use super::substeps::{Demand, SubstepRule};
+use super::substeps::{Choice, Demand, SubstepRule};
 use super::timings::Timings;
 use super::{FrameReport, SolverError, Stage};
 use crate::constraints::{ConstraintGroup, Corrections, Needs, Substep};
@@ -36,6 +36,8 @@ pub(crate) struct Parts {
     pub removal: Option<RemovalRules>,
     pub substeps: SubstepRule,
     pub iterations: u32,
+    /// Violation of every group at which the iteration stops.
+    pub tolerance: f64,
     pub gravity: Vector,
     pub spacing: f64,
     pub frame_time: f64,
@@ -96,6 +98,10 @@ pub(crate) struct World {
     pub(super) measured: OnceLock<Vec<Real>>,
     pub(super) corrections: Corrections,
     pub(super) changes: Changes,
+    /// Why the last frame took the substeps it took.
+    pub(super) choice: Choice,
+    /// Iterations of the frame so far.
+    pub(super) iterated: u32,
     removed: Vec<u32>,
     pub(super) needs_rows: bool,
 }
@@ -112,6 +118,8 @@ impl World {
             measured: OnceLock::new(),
             corrections: Corrections::default(),
             changes: Changes::default(),
+            choice: Choice::default(),
+            iterated: 0,
             removed: Vec::new(),
             needs_rows: false,
         };
@@ -167,6 +175,7 @@ impl World {
         let mut removed = 0;
         if self.clock.done == 0 {
             removed = self.remove();
+            self.iterated = 0;
             self.clock.substeps = self.choose_substeps();
             self.clock.pressure_limit = self.pressure_limit();
             self.clock.dt = self.parts.frame_time / f64::from(self.clock.substeps);
@@ -267,7 +276,7 @@ impl World {
 
     fn choose_substeps(&mut self) -> u32 {
         let demand = self.demand();
-        let choice = self.parts.substeps.choose(self.parts.frame_time, demand);
+        let choice = self.parts.substeps.choose_after(self.clock.substeps, self.parts.frame_time, demand);
         let capped = choice.wanted > choice.substeps;
         if capped && !self.clock.capped {
             let message = format!(
@@ -278,6 +287,7 @@ impl World {
             self.events.push(Event { time: self.clock.time, severity: Severity::Warning, message });
         }
         self.clock.capped = capped;
+        self.choice = choice;
         choice.substeps
     }
 

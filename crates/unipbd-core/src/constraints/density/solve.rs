@@ -5,16 +5,16 @@ use crate::constraints::{Corrections, Substep};
 use crate::math::Real;
 use crate::phase::Phase;
 use crate::scene::GradientPoint;
-use crate::simd::{self, DensityInput, DensityOutput, Weights};
+use crate::simd::{self, DensityInput, DensityOutput, Tensile, Weights};
 
 impl Density {
     /// Pass 1: sums of the kernel, its gradient and the response of the neighbours.
     pub(super) fn sum_kernels(&mut self, now: Substep<'_>) {
-        let positions = now.particles.positions();
+        let gradients = self.settings.gradients;
         let input = DensityInput {
-            positions,
-            gradient_positions: match self.settings.gradients {
-                GradientPoint::Predicted => None,
+            positions: Density::value_positions(gradients, &self.middle, now),
+            gradient_positions: match gradients {
+                GradientPoint::Predicted | GradientPoint::Middle => None,
                 GradientPoint::Start => Some(now.particles.starts()),
             },
             weights: match self.settings.uniform_inverse_mass {
@@ -24,7 +24,10 @@ impl Density {
         };
         let sums = &mut self.sums;
         let out = DensityOutput { value: &mut sums.value, gradient: &mut sums.gradient, response: &mut sums.response };
-        simd::density(now.pairs(), self.kernel.shape(), input, out);
+        match self.kernel.alternative() {
+            None => simd::density(now.pairs(), self.kernel.shape(), input, out),
+            Some(other) => simd::density(now.pairs(), other, input, out),
+        }
     }
 
     /// Pass 2: density errors and the relaxed step of each multiplier.
@@ -32,8 +35,9 @@ impl Density {
         let volume = self.settings.volume;
         let own = volume * self.kernel.value(0.0);
         let (sums, coverage, materials) = (&self.sums, &self.coverage, &self.settings.materials);
-        let positions = now.particles.positions();
-        let gradient_positions = self.gradient_positions(now);
+        let gradients = self.settings.gradients;
+        let positions = Density::value_positions(gradients, &self.middle, now);
+        let gradient_positions = Density::gradient_positions(gradients, &self.middle, now);
         let (errors, walls) = (&mut self.error, &mut self.wall_gradient);
         now.parallelism.chunks2(errors, walls, |first, errors, walls| {
             for k in 0..errors.len() {
@@ -66,9 +70,12 @@ impl Density {
 
     /// Pass 3: displacements, gathered per row, so that momentum is kept with unequal masses too.
     pub(super) fn correct(&mut self, now: Substep<'_>, out: &mut Corrections) {
-        let positions = self.gradient_positions(now);
+        let positions = Density::gradient_positions(self.settings.gradients, &self.middle, now);
         let sums = &mut self.sums.gradient;
-        simd::correction(now.pairs(), self.kernel.shape(), positions, &self.step, sums);
+        match self.kernel.alternative() {
+            None => simd::correction(now.pairs(), self.kernel.shape(), positions, &self.step, sums),
+            Some(other) => simd::correction(now.pairs(), other, positions, &self.step, sums),
+        }
         let (sums, steps, walls) = (&self.sums.gradient, &self.step, &self.wall_gradient);
         let (volume, inverse_masses) = (self.settings.volume, now.particles.inverse_masses());
         let rows = now.particles.dense();
@@ -93,13 +100,38 @@ impl Density {
         let (materials, material_of) = (&self.settings.materials, now.particles.materials());
         self.strength.resize(now.particles.dense(), 0.0);
         now.parallelism.fill(&mut self.strength, |i| materials[usize::from(material_of[i])].repulsion);
-        let positions = self.gradient_positions(now);
+        let positions = Density::gradient_positions(self.settings.gradients, &self.middle, now);
         let (reach, strengths) = (repulsion.reach, Weights::Column(&self.strength));
         simd::repulsion(now.pairs(), reach, positions, strengths, &mut self.sums.gradient);
         let (sums, strength) = (&self.sums.gradient, &self.strength);
         let inverse_masses = now.particles.inverse_masses();
         now.parallelism.update(&mut out.displacements_mut()[..strength.len()], |i, displacement| {
             *displacement += sums[i] * (strength[i] * inverse_masses[i]);
+        });
+    }
+
+    /// The artificial pressure of Macklin & Müller 2013 (equations 13 and 14): liquids alone.
+    pub(super) fn press_apart(&mut self, now: Substep<'_>, out: &mut Corrections) {
+        let pressure = self.settings.artificial_pressure;
+        if pressure == 0.0 {
+            return;
+        }
+        let (inverse_masses, phases) = (now.particles.inverse_masses(), now.particles.phases());
+        now.parallelism.fill(&mut self.step, |i| match phases[i] {
+            Phase::Liquid if inverse_masses[i] > 0.0 => 0.5 * pressure / inverse_masses[i],
+            _ => 0.0,
+        });
+        let positions = Density::gradient_positions(self.settings.gradients, &self.middle, now);
+        let (sums, reference) = (&mut self.sums.gradient, 0.2 * self.settings.kernel_radius);
+        match self.kernel.alternative() {
+            None => {
+                simd::correction(now.pairs(), Tensile::new(self.kernel.shape(), reference), positions, &self.step, sums)
+            }
+            Some(other) => simd::correction(now.pairs(), Tensile::new(other, reference), positions, &self.step, sums),
+        }
+        let (sums, volume) = (&self.sums.gradient, self.settings.volume);
+        now.parallelism.update(&mut out.displacements_mut()[..now.particles.dense()], |i, displacement| {
+            *displacement -= sums[i] * (volume * inverse_masses[i]);
         });
     }
 }
@@ -137,7 +169,7 @@ impl DensityMaterial {
         // A particle moved by a script may push, never pull: its own response is missing from the
         // denominator.
         let least = if inverse_mass == 0.0 { 0.0 } else { self.multiplier_min };
-        let new = (old + self.relaxation * error / response.max(self.response_min)).max(least);
+        let new = (old + self.relaxation * error / (response.max(self.response_min) + self.mixing)).max(least);
         // What is squeezed in with no way out must not push harder the shorter the substep is.
         if self.multiplier_min == 0.0 && inverse_mass > 0.0 { new.min(limit / inverse_mass) } else { new }
     }
