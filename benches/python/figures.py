@@ -15,7 +15,7 @@ from pathlib import Path
 
 import unipbd as up
 
-BOUNDS = {"positions_of_100k_ms": 1.0, "step_call_over_core_us": 5.0}
+BOUNDS = {"first_positions_of_100k_after_a_step_ms": 1.0, "positions_of_100k_ms": 1.0, "step_call_over_core_us": 5.0}
 
 
 def best(work: Callable[[], object], repeats: int = 7) -> float:
@@ -39,13 +39,16 @@ def pool(spacing: float, size: float) -> up.Scene:
 
 def getters() -> dict[str, float]:
     """Each column of a hundred thousand particles [ms], the first getter after a step and later ones."""
-    sim = pool(0.01, 3.17).build(threads=1)
-    sim.step()
-    begin = time.perf_counter()
-    first = sim.positions
-    cold = time.perf_counter() - begin
-    assert len(first) >= 100_000
-    figures = {"first_positions_of_100k_after_a_step_ms": 1e3 * cold}
+    scene = pool(0.01, 3.17)
+    scene.solver.substeps = 1
+    sim = scene.build(threads=1)
+    cold = []
+    for _ in range(15):
+        sim.step()
+        begin = time.perf_counter()
+        assert len(sim.positions) >= 100_000
+        cold.append(time.perf_counter() - begin)
+    figures = {"first_positions_of_100k_after_a_step_ms": 1e3 * sorted(cold)[len(cold) // 2]}
     for name in ("positions", "velocities", "ids", "phases"):
         figures[f"{name}_of_100k_ms"] = 1e3 * best(lambda name=name: getattr(sim, name), 30)  # type: ignore[misc]
     return figures
@@ -76,7 +79,12 @@ def batches() -> dict[str, float]:
     worlds = [scene.build(seed=seed, threads=1) for seed in range(64)]
     frames = 5
     together = best(lambda: batch.step(frames), 3)
-    alone = best(lambda: [world.step(frames) for world in worlds], 3)
+
+    def one_by_one() -> None:
+        for world in worlds:
+            world.step(frames)
+
+    alone = best(one_by_one, 3)
     assert batch.state_hashes() == [world.state_hash() for world in worlds], "a world in a batch is what it is alone"
     work = int(batch.counts.sum()) * frames
     return {

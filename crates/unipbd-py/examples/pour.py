@@ -85,7 +85,7 @@ class Pour(gymnasium.Env[Observation, npt.NDArray[np.float32]]):
         done = self._share > 0.9 and abs(self._angle) < 0.1
         return observation, reward, done, self._sim.frame >= self._limit, {"poured": self._share}
 
-    def render(self) -> npt.NDArray[np.uint8] | None:  # type: ignore[override]
+    def render(self) -> npt.NDArray[np.uint8] | None:
         return self._sim.render(width=320) if self.render_mode == "rgb_array" else None
 
 

@@ -10,6 +10,9 @@ use unipbd_core::SolverError;
 use crate::errors;
 use crate::solver::{Solver, World};
 
+/// Frames between two looks for Ctrl-C.
+const STRETCH: u64 = 8;
+
 /// Threads for a batch: made late, and anew in a forked child.
 #[pyclass(frozen, module = "unipbd._native")]
 pub struct Pool {
@@ -40,11 +43,16 @@ impl Pool {
         }
         let mut worlds: Vec<&mut World> = locked.iter_mut().map(|world| &mut **world).collect();
         let mut failed: Vec<Option<SolverError>> = vec![None; worlds.len()];
-        for _ in 0..frames {
+        let mut left = frames;
+        while left > 0 {
+            let stretch = left.min(STRETCH);
+            left -= stretch;
             py.detach(|| {
                 self.install(|| {
                     let running = worlds.par_iter_mut().zip(&mut failed).filter(|(_, failed)| failed.is_none());
-                    running.for_each(|(world, failed)| *failed = world.advance().err());
+                    running.for_each(|(world, failed)| {
+                        *failed = (0..stretch).try_for_each(|_| world.advance().map(drop)).err();
+                    });
                 });
             });
             py.check_signals()?;

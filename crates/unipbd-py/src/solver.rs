@@ -27,7 +27,7 @@ pub struct World {
     pub has_groups: bool,
     pub failure: Failure,
     /// Rows in the order of their ids, until they change.
-    order: Option<Vec<u32>>,
+    pub order: Option<Vec<u32>>,
 }
 
 impl World {
@@ -98,7 +98,6 @@ impl Solver {
     /// Advances by this many frames.
     fn step(&self, py: Python<'_>, frames: u64, hooks: Vec<Py<PyAny>>) -> PyResult<()> {
         let mut world = self.lock(py)?;
-        world.order = None;
         world.frames(py, frames, &hooks)
     }
 

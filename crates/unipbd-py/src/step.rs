@@ -36,7 +36,16 @@ impl Stop {
 impl World {
     /// One frame, where no hook has to be called.
     pub fn advance(&mut self) -> Result<FrameReport, SolverError> {
-        self.running.solver.step_frame()
+        let report = self.running.solver.step_frame();
+        self.note_order(&report);
+        report
+    }
+
+    /// Rows change places when a list is built, and when particles come or go.
+    fn note_order<E>(&mut self, report: &Result<FrameReport, E>) {
+        if !report.as_ref().is_ok_and(|report| report.list_builds == 0 && report.emitted == 0 && report.removed == 0) {
+            self.order = None;
+        }
     }
 
     /// One frame with everything that Python has hung into it.
@@ -59,6 +68,7 @@ impl World {
             }
             Ok(())
         });
+        self.note_order(&report);
         failed()?;
         report
     }

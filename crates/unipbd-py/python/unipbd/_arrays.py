@@ -19,7 +19,7 @@ def numbers(values: npt.ArrayLike, what: str, error: type[Exception]) -> Doubles
     except ValueError as cause:
         raise error(f"{what} is no array: {cause}") from None
     if array.size == 0:
-        array = array.astype(np.float64)
+        return np.empty(array.shape)
     if array.dtype.kind not in "fiu":
         raise error(f"{what} must be real numbers, not {array.dtype}")
     return np.ascontiguousarray(array, dtype=np.float64)

@@ -7,6 +7,25 @@ from typing import Any, TypedDict, final
 import numpy as np
 import numpy.typing as npt
 
+__all__ = [
+    "LogReader",
+    "Pool",
+    "Projection",
+    "Recorder",
+    "Solver",
+    "State",
+    "Substep",
+    "__version__",
+    "check_scene",
+    "default_scene",
+    "estimate_scene",
+    "load_scene",
+    "parse_scene",
+    "run_command",
+    "scene_schema",
+    "scene_to_toml",
+]
+
 __version__: str
 
 class _Look(TypedDict):

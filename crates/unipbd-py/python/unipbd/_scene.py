@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import copy
 import difflib
-import functools
 import json
 import os
 from collections.abc import Iterator, Mapping, MutableMapping, Sequence
@@ -21,10 +20,14 @@ if TYPE_CHECKING:
 MATERIALS = ("liquid", "gas", "smoke", "solid")
 
 
-@functools.lru_cache(maxsize=1)
+_known_schema: dict[str, Any] = {}
+
+
 def _schema() -> dict[str, Any]:
-    schema: dict[str, Any] = json.loads(_native.scene_schema())
-    return schema
+    """The JSON schema of a scene, read when first asked for."""
+    if not _known_schema:
+        _known_schema.update(json.loads(_native.scene_schema()))
+    return _known_schema
 
 
 def _resolve(node: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -302,9 +305,9 @@ class Scene:
 
     # -- builder calls -------------------------------------------------------------------------
 
-    def add(self, kind: str, **values: Any) -> Table:
+    def add(self, table: str, /, **values: Any) -> Table:
         """Adds a table of any kind, such as ``scene.add("tank", min=(0, 0), max=(1, 1))``."""
-        return self._tables(kind).append(**values)
+        return self._tables(table).append(**values)
 
     def add_liquid(self, name: str, density: float = 1000.0, **values: Any) -> Table:
         """Adds a liquid of this rest density [kg/m^2]."""
