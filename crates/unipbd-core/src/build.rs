@@ -7,7 +7,7 @@ mod waves;
 pub(crate) use bodies::{body_copies, body_names, shape as body_shape};
 
 use crate::constraints::{ConstraintGroup, Density, DensitySettings};
-use crate::effects::{Conduction, Drag, Effect, Heating, SmokeAdvection, Viscosity, VorticityConfinement};
+use crate::effects::{Cohesion, Conduction, Drag, Effect, Heating, QuadraticDrag, SmokeAdvection, Viscosity, VorticityConfinement};
 use crate::math::{Vector, Vector64, real, vector};
 use crate::neighbors::{Cover, Neighbors, Periodic, PeriodicAxis};
 use crate::observe::Material;
@@ -113,6 +113,12 @@ fn effects(scene: &Scene, seed: u64) -> Vec<Box<dyn Effect>> {
     }
     if let Some(drag) = Drag::new(scene, Rng::new(seed, WIND_STREAM).state()) {
         effects.push(Box::new(drag));
+    }
+    if let Some(drag) = QuadraticDrag::new(scene, Rng::new(seed, WIND_STREAM).state()) {
+        effects.push(Box::new(drag));
+    }
+    if let Some(cohesion) = Cohesion::new(scene) {
+        effects.push(Box::new(cohesion));
     }
     if let Some(conduction) = Conduction::new(scene) {
         effects.push(Box::new(conduction));

@@ -13,6 +13,10 @@ pub struct Liquid {
     pub density: f64,
     /// XSPH viscosity per substep, 0 to 1: the fraction of velocity differences that is smoothed.
     pub viscosity: f64,
+    /// Strength of surface tension, the pull of a particle on its neighbour [m/s^2].
+    pub cohesion: f64,
+    /// Drag against the air that grows with the square of the speed [1/m].
+    pub quadratic_drag: f64,
     /// Factor on gravity.
     pub gravity_factor: f64,
     /// Colour in pictures and logs, `"#rrggbb"`.
@@ -22,7 +26,15 @@ pub struct Liquid {
 
 impl Default for Liquid {
     fn default() -> Self {
-        Liquid { name: String::new(), density: 1000.0, viscosity: 0.0, gravity_factor: 1.0, color: None }
+        Liquid {
+            name: String::new(),
+            density: 1000.0,
+            viscosity: 0.0,
+            cohesion: 0.0,
+            quadratic_drag: 0.0,
+            gravity_factor: 1.0,
+            color: None,
+        }
     }
 }
 
@@ -39,6 +51,8 @@ pub struct Gas {
     pub gravity_factor: f64,
     /// Drag rate k towards the environment velocity where the gas is thin [1/s].
     pub drag: f64,
+    /// Drag that grows with the square of the speed [1/m].
+    pub quadratic_drag: f64,
     /// Strength of vorticity confinement, dimensionless (0 is off; above 5 it adds energy).
     pub vorticity: f64,
     /// Diffusivity of temperature [m^2/s].
@@ -65,6 +79,7 @@ impl Default for Gas {
             density: 1.2,
             gravity_factor: -0.3,
             drag: 0.0,
+            quadratic_drag: 0.0,
             vorticity: 0.0,
             conductivity: 0.0,
             viscosity: 0.0,
