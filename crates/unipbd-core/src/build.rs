@@ -16,7 +16,7 @@ use crate::particles::{NewParticle, OptionalColumns, Particles};
 use crate::phase::{MaterialIndex, Phase};
 use crate::rigid::RigidBodies;
 use crate::rng::Rng;
-use crate::scene::{GradientPoint, MaterialRef, Problems, Scene, block_points, disc_points};
+use crate::scene::{GradientPoint, MaterialRef, Points, Problems, Scene, block_points, disc_points};
 use crate::sources::{EmitterSystem, RemovalRules};
 use crate::step::{BodyForce, Parts, Solver, SubstepRule};
 use crate::walls::Walls;
@@ -145,6 +145,7 @@ fn body_force(material: MaterialRef<'_>, scene: &Scene) -> BodyForce {
             BodyForce { acceleration: vector(gravity * liquid.gravity_factor), thermal: false }
         }
         MaterialRef::Gas(gas) => BodyForce { acceleration: vector(gravity * gas.gravity_factor), thermal: true },
+        MaterialRef::Solid(solid) => BodyForce { acceleration: vector(gravity * solid.gravity_factor), thermal: false },
         MaterialRef::Smoke(_) | MaterialRef::Rigid => BodyForce { acceleration: Vector::ZERO, thermal: false },
     }
 }
@@ -211,7 +212,24 @@ fn particles(scene: &Scene, seed: u64, optional: OptionalColumns) -> Particles {
         };
         filling.pour(scene, seed, &mut particles);
     }
+    scene.points.iter().for_each(|points| add_points(points, scene, &mut particles));
     particles
+}
+
+fn add_points(points: &Points, scene: &Scene, particles: &mut Particles) {
+    let Some((index, material)) = scene.material(&points.material) else { return };
+    let mass = material.density() * scene.spacing * scene.spacing;
+    for (number, &position) in points.positions.iter().enumerate() {
+        let velocity = points.velocities.get(number).copied().unwrap_or(points.velocity);
+        particles.push(NewParticle {
+            position: vector(position.into()),
+            velocity: vector(velocity.into()),
+            inverse_mass: points.motion.inverse_mass(mass),
+            material: index as MaterialIndex,
+            phase: material.phase(),
+            temperature: real(points.temperature),
+        });
+    }
 }
 
 impl Filling<'_> {

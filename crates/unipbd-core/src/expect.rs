@@ -67,7 +67,8 @@ impl Watch {
     /// Kinetic and potential energy of particles and dynamic bodies [J].
     fn energy(&self, diagnostics: &Diagnostics, solver: &Solver) -> f64 {
         let of = |body: &Body| {
-            let kinetic = body.mass * body.velocity.length_squared() + body.inertia * body.angular_velocity * body.angular_velocity;
+            let kinetic = body.mass * body.velocity.length_squared()
+                + body.inertia * body.angular_velocity * body.angular_velocity;
             0.5 * kinetic - body.mass * self.gravity.dot(body.position)
         };
         let bodies: f64 = dynamic(solver).map(of).sum();
@@ -101,7 +102,10 @@ impl Watch {
         let (start, available) = self.start.unwrap_or((0.0, 1.0));
         at_most("energy_growth", (self.energy - start) / available, self.expect.energy_growth);
         if self.deepest.0 > TOUCHING * solver.spacing() {
-            lines.push(format!("contained: something is {:.4} m inside a wall at {:.3} s", self.deepest.0, self.deepest.1));
+            lines.push(format!(
+                "contained: something is {:.4} m inside a wall at {:.3} s",
+                self.deepest.0, self.deepest.1
+            ));
         }
         self.expect.material.iter().for_each(|expected| check_material(expected, solver, &mut lines));
         self.expect.body.iter().for_each(|expected| check_body(expected, solver, &mut lines));

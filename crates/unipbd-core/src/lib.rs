@@ -15,7 +15,9 @@
 
 pub mod bodies;
 mod build;
+mod bytes;
 pub mod constraints;
+pub mod edit;
 pub mod effects;
 mod expect;
 pub mod kernel;
@@ -32,12 +34,14 @@ pub mod scene;
 pub mod shapes;
 pub mod simd;
 mod sources;
-mod state;
+pub mod state;
 pub mod step;
 pub mod walls;
 
 pub use build::BuildOptions;
+pub use edit::{Edit, EditError};
 pub use expect::Watch;
 pub use math::{Real, Vector, Vector64};
 pub use phase::{MaterialIndex, Phase};
-pub use step::{FrameReport, Solver, SolverError, Stage};
+pub use state::{State, StateError};
+pub use step::{FrameReport, Solver, SolverError, Stage, SubstepView};

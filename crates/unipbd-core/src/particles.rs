@@ -4,6 +4,7 @@
 //! rows `[dense, len)` are loose: smoke markers and free points. Rows are re-sorted as particles
 //! move, so a row number means nothing between two steps: the id does.
 
+use crate::bytes::{Damage, Reader, Writer};
 use crate::math::{Real, Vector};
 use crate::parallel::Parallelism;
 use crate::phase::{MaterialIndex, Phase};
@@ -43,6 +44,7 @@ macro_rules! columns {
             dense: usize,
             next_id: u32,
             optional: OptionalColumns,
+            scripted: bool,
         }
 
         impl Particles {
@@ -57,6 +59,26 @@ macro_rules! columns {
             /// Brings the rows into a new order: row `i` becomes what stood in row `order[i]`.
             pub(crate) fn reorder(&mut self, order: &[u32], parallelism: Parallelism, scratch: &mut Scratch) {
                 $( gather(&mut self.$name, order, parallelism, scratch.buffer()); )*
+            }
+
+            /// Appends every column to a saved state.
+            pub(crate) fn write(&self, out: &mut Writer) {
+                $( out.column(&self.$name); )*
+                out.value(self.dense as u64);
+                out.value(self.next_id);
+                let flags = [self.optional.temperature, self.optional.age, self.scripted];
+                out.value(flags.into_iter().rev().fold(0_u16, |bits, flag| bits << 1 | u16::from(flag)));
+            }
+
+            /// Takes every column from a saved state.
+            pub(crate) fn read(input: &mut Reader<'_>) -> Result<Self, Damage> {
+                let mut particles = Particles { $( $name: input.column()?, )* ..Particles::default() };
+                particles.dense = usize::try_from(input.value::<u64>()?).unwrap_or(usize::MAX);
+                particles.next_id = input.value()?;
+                let flags = input.value::<u16>()?;
+                particles.optional = OptionalColumns { temperature: flags & 1 != 0, age: flags & 2 != 0 };
+                particles.scripted = flags & 4 != 0;
+                Ok(particles)
             }
 
             /// Memory held by the columns [bytes].
@@ -94,6 +116,8 @@ columns! {
     temperature: Real,
     /// Time since the particle was added [s] (optional column).
     age: Real,
+    /// Acceleration that a hook adds in this substep [m/s^2]; empty unless one does.
+    acceleration: Vector,
 }
 
 impl Particles {
@@ -120,6 +144,11 @@ impl Particles {
     /// Number of ids given so far: every id is below it.
     pub fn ids_given(&self) -> u32 {
         self.next_id
+    }
+
+    /// Which columns the scene asked for.
+    pub(crate) fn optional(&self) -> OptionalColumns {
+        self.optional
     }
 
     /// Positions [m].
@@ -167,6 +196,33 @@ impl Particles {
         &self.density_error
     }
 
+    /// Whether a dense particle is, or ever was, moved by a script.
+    pub(crate) fn any_scripted(&self) -> bool {
+        self.scripted
+    }
+
+    /// From now on dense rows may have an inverse mass of 0.
+    pub(crate) fn note_scripted(&mut self) {
+        self.scripted = true;
+    }
+
+    /// Accelerations by row for the next prediction, zero at first [m/s^2].
+    pub(crate) fn accelerations_mut(&mut self) -> &mut [Vector] {
+        let rows = self.len();
+        self.acceleration.resize(rows, Vector::ZERO);
+        &mut self.acceleration
+    }
+
+    /// No accelerations beside those of the scene.
+    pub(crate) fn clear_accelerations(&mut self) {
+        self.acceleration.clear();
+    }
+
+    /// Lets the substep start at the present positions.
+    pub(crate) fn start_here(&mut self) {
+        self.start.copy_from_slice(&self.position);
+    }
+
     /// Adds a particle and returns its id.
     pub(crate) fn push(&mut self, new: NewParticle) -> u32 {
         let id = self.next_id;
@@ -188,6 +244,10 @@ impl Particles {
         if self.optional.age {
             self.age.push(0.0);
         }
+        if !self.acceleration.is_empty() {
+            self.acceleration.push(Vector::ZERO);
+        }
+        self.scripted |= new.inverse_mass == 0.0 && new.phase.is_dense();
         if new.phase.is_dense() {
             let last = self.len() - 1;
             self.swap_rows(self.dense, last);

@@ -37,7 +37,8 @@ fn displacement(wave: &Wave, phase: f64, x: Vector64) -> Vector64 {
     let (sin, cos) = (k * x.x + phase).sin_cos();
     let above = x.y > wave.level;
     let far = DEEP * wave.wavelength;
-    let depth = if above { wave.top.map(|top| top - wave.level) } else { wave.bottom.map(|bottom| wave.level - bottom) };
+    let depth =
+        if above { wave.top.map(|top| top - wave.level) } else { wave.bottom.map(|bottom| wave.level - bottom) };
     let depth = depth.unwrap_or(far).min(far);
     let distance = (depth - (x.y - wave.level).abs()).max(0.0);
     let full = (k * depth).sinh();

@@ -21,7 +21,7 @@ impl Viscosity {
         let of = |material: MaterialRef<'_>| match material {
             MaterialRef::Liquid(liquid) => real(liquid.viscosity),
             MaterialRef::Gas(gas) => real(gas.viscosity),
-            MaterialRef::Smoke(_) | MaterialRef::Rigid => 0.0,
+            MaterialRef::Smoke(_) | MaterialRef::Solid(_) | MaterialRef::Rigid => 0.0,
         };
         let strength: Vec<Real> = scene.materials().map(of).collect();
         any(&strength).then(|| Viscosity {
@@ -46,8 +46,8 @@ impl Effect for Viscosity {
 
     fn apply(&mut self, now: Substep<'_>, out: &mut Changes) {
         match self.uniform {
-            Some(strength) => self.apply_uniform(now, strength, out),
-            None => self.apply_mixed(now, out),
+            Some(strength) if !now.particles.any_scripted() => self.apply_uniform(now, strength, out),
+            _ => self.apply_mixed(now, out),
         }
     }
 }

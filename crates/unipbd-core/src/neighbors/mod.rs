@@ -19,5 +19,6 @@ mod sparse;
 pub use grid::{Cursor, Grid};
 pub use list::{Block, Chunk, Entries, LANES, NeighborList};
 pub use periodic::{Periodic, PeriodicAxis};
+pub(crate) use search::SavedList;
 pub use search::{Cover, Neighbors, Prepared};
 pub use skin::{Motion, SkinList};

@@ -1,6 +1,7 @@
 //! The neighbour search of a run: grid, list and skin, kept valid while particles move.
 
 use super::{Grid, Motion, NeighborList, Periodic, SkinList};
+use crate::bytes::{Damage, Reader, Writer};
 use crate::math::{Real, Vector};
 use crate::parallel::Parallelism;
 use crate::particles::{Particles, Scratch};
@@ -27,6 +28,39 @@ pub enum Prepared {
     Kept,
     /// Rows were re-sorted and listed anew.
     Rebuilt,
+}
+
+/// What a saved state keeps of the search: the list is made from it again.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct SavedList {
+    /// Positions the list was built at, in its row order [m].
+    reference: Vec<Vector>,
+    skin: Real,
+    /// Motion since then, as the search last saw it.
+    motion: Motion,
+}
+
+impl SavedList {
+    /// Whether all numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        let numbers = [self.skin, self.motion.drift.x, self.motion.drift.y, self.motion.deviation];
+        numbers.into_iter().all(Real::is_finite) && self.reference.iter().all(|point| point.is_finite())
+    }
+
+    /// Appends it to a saved state.
+    pub fn write(&self, out: &mut Writer) {
+        out.column(&self.reference);
+        out.value(self.skin);
+        out.value(self.motion.drift);
+        out.value(self.motion.deviation);
+    }
+
+    /// Takes it from a saved state.
+    pub fn read(input: &mut Reader<'_>) -> Result<Self, Damage> {
+        let (reference, skin) = (input.column()?, input.value()?);
+        let motion = Motion { drift: input.value()?, deviation: input.value()? };
+        Ok(SavedList { reference, skin, motion })
+    }
 }
 
 /// Neighbours of the dense particles.
@@ -80,6 +114,11 @@ impl Neighbors {
     /// Lists built so far.
     pub fn builds(&self) -> u64 {
         self.list.builds()
+    }
+
+    /// Whether the rows of the list are those of the particles: none were added or removed since.
+    pub fn is_current(&self) -> bool {
+        self.list.builds() > 0 && self.list.skin() >= 0.0
     }
 
     /// The next [`prepare`](Self::prepare) makes a new list: rows were added or removed.
@@ -151,26 +190,21 @@ impl Neighbors {
         }
     }
 
-    /// What a saved state needs to make the same list again: reference positions and skin.
-    pub(crate) fn saved(&self) -> (&[Vector], Real) {
-        (self.list.reference(), self.list.skin())
+    /// What a saved state needs to make the same list again.
+    pub(crate) fn saved(&self) -> SavedList {
+        SavedList { reference: self.list.reference().to_vec(), skin: self.list.skin(), motion: self.motion }
     }
 
     /// Makes the list of a saved state again; rows already stand in its order.
-    pub(crate) fn restore(
-        &mut self,
-        particles: &Particles,
-        reference: &[Vector],
-        skin: Real,
-        parallelism: Parallelism,
-    ) {
-        if reference.len() != particles.dense() || skin < 0.0 {
+    pub(crate) fn restore(&mut self, particles: &Particles, saved: &SavedList, parallelism: Parallelism) {
+        let reference = &saved.reference;
+        if reference.len() != particles.dense() || saved.skin < 0.0 {
             self.invalidate();
             return;
         }
-        self.grid.order(reference, reference.len(), SkinList::list_radius(self.radius, skin), parallelism);
-        self.list.build(&self.grid, reference, self.radius, skin, parallelism);
-        self.motion = self.list.motion(&self.grid, particles.positions(), parallelism);
+        self.grid.order(reference, reference.len(), SkinList::list_radius(self.radius, saved.skin), parallelism);
+        self.list.build(&self.grid, reference, self.radius, saved.skin, parallelism);
+        self.motion = saved.motion;
     }
 
     /// Memory held [bytes].

@@ -1,8 +1,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Block, BodyDescription, Disc, Emitter, Expect, Gas, HalfPlane, Heater, Injector, JointDescription, Liquid, Obstacle,
-    Sink, Smoke, SolverSettings, Tank, Wave,
+    Block, BodyDescription, Disc, Emitter, Expect, Gas, HalfPlane, Heater, Injector, JointDescription, Liquid,
+    Obstacle, Points, Sink, Smoke, Solid, SolverSettings, Tank, Wave,
 };
 
 /// A whole scene. All quantities are in SI units; angles carry the suffix `_deg`.
@@ -41,12 +41,18 @@ pub struct Scene {
     /// Smokes, one table each.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub smoke: Vec<Smoke>,
+    /// Solids, one table each.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub solid: Vec<Solid>,
     /// Rectangles filled with particles at the start.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub block: Vec<Block>,
     /// Discs filled with particles at the start.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub disc: Vec<Disc>,
+    /// Particles at places given one by one.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub points: Vec<Points>,
     /// Sources of particles.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub emitter: Vec<Emitter>,
@@ -99,8 +105,10 @@ impl Default for Scene {
             liquid: Vec::new(),
             gas: Vec::new(),
             smoke: Vec::new(),
+            solid: Vec::new(),
             block: Vec::new(),
             disc: Vec::new(),
+            points: Vec::new(),
             emitter: Vec::new(),
             half_plane: Vec::new(),
             tank: Vec::new(),

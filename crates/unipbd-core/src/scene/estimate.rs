@@ -113,7 +113,8 @@ fn population(scene: &Scene) -> Population {
 fn start_count(scene: &Scene) -> f64 {
     let blocks = scene.block.iter().map(|block| block_counts(block, scene.spacing).into_iter().product::<f64>());
     let discs = scene.disc.iter().map(|disc| disc_count(disc, scene.spacing));
-    blocks.chain(discs).sum()
+    let points = scene.points.iter().map(|points| points.positions.len() as f64);
+    blocks.chain(discs).chain(points).sum()
 }
 
 fn changes(scene: &Scene) -> Vec<Change> {
@@ -125,6 +126,10 @@ fn changes(scene: &Scene) -> Vec<Change> {
     for disc in &scene.disc {
         let jump = -disc_count(disc, scene.spacing);
         changes.push(Change { time: scene.lifetime(&disc.material), rate: 0.0, jump });
+    }
+    for points in &scene.points {
+        let jump = -(points.positions.len() as f64);
+        changes.push(Change { time: scene.lifetime(&points.material), rate: 0.0, jump });
     }
     for emitter in &scene.emitter {
         let (particles, markers) = rates(emitter, scene.spacing);

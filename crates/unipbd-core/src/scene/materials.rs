@@ -106,6 +106,28 @@ pub struct Smoke {
     pub color: Option<String>,
 }
 
+/// A solid: free points with a mass, held together by constraints alone; no fluid feels them.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields, default)]
+pub struct Solid {
+    /// Name by which points refer to it.
+    pub name: String,
+    /// Mass per area: a point has this times the square of the spacing [kg/m^2].
+    pub density: f64,
+    /// Factor on gravity.
+    pub gravity_factor: f64,
+    /// Colour in pictures and logs, `"#rrggbb"`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub color: Option<String>,
+}
+
+impl Default for Solid {
+    fn default() -> Self {
+        Solid { name: String::new(), density: 1000.0, gravity_factor: 1.0, color: None }
+    }
+}
+
 /// A material of a scene, whatever its kind.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MaterialRef<'a> {
@@ -115,6 +137,8 @@ pub enum MaterialRef<'a> {
     Gas(&'a Gas),
     /// A smoke.
     Smoke(&'a Smoke),
+    /// A solid.
+    Solid(&'a Solid),
     /// The samples of all rigid bodies.
     Rigid,
 }
@@ -129,6 +153,7 @@ impl<'a> MaterialRef<'a> {
             MaterialRef::Liquid(liquid) => &liquid.name,
             MaterialRef::Gas(gas) => &gas.name,
             MaterialRef::Smoke(smoke) => &smoke.name,
+            MaterialRef::Solid(solid) => &solid.name,
             MaterialRef::Rigid => RIGID,
         }
     }
@@ -139,6 +164,7 @@ impl<'a> MaterialRef<'a> {
             MaterialRef::Liquid(_) => Phase::Liquid,
             MaterialRef::Gas(_) => Phase::Gas,
             MaterialRef::Smoke(_) => Phase::Smoke,
+            MaterialRef::Solid(_) => Phase::Solid,
             MaterialRef::Rigid => Phase::Rigid,
         }
     }
@@ -149,6 +175,7 @@ impl<'a> MaterialRef<'a> {
             MaterialRef::Liquid(liquid) => liquid.density,
             MaterialRef::Gas(gas) => gas.density,
             MaterialRef::Smoke(_) | MaterialRef::Rigid => 0.0,
+            MaterialRef::Solid(solid) => solid.density,
         }
     }
 
@@ -158,19 +185,21 @@ impl<'a> MaterialRef<'a> {
             MaterialRef::Liquid(liquid) => liquid.color.as_deref(),
             MaterialRef::Gas(gas) => gas.color.as_deref(),
             MaterialRef::Smoke(smoke) => smoke.color.as_deref(),
+            MaterialRef::Solid(solid) => solid.color.as_deref(),
             MaterialRef::Rigid => None,
         }
     }
 }
 
 impl super::Scene {
-    /// All materials in index order: liquids, gases, smokes, each in file order, then the bodies.
+    /// All materials in index order: liquids, gases, smokes, solids, each in file order, then the bodies.
     pub fn materials(&self) -> impl Iterator<Item = MaterialRef<'_>> {
         let liquids = self.liquid.iter().map(MaterialRef::Liquid);
         let gases = self.gas.iter().map(MaterialRef::Gas);
         let smokes = self.smoke.iter().map(MaterialRef::Smoke);
+        let solids = self.solid.iter().map(MaterialRef::Solid);
         let bodies = (!self.body.is_empty()).then_some(MaterialRef::Rigid);
-        liquids.chain(gases).chain(smokes).chain(bodies)
+        liquids.chain(gases).chain(smokes).chain(solids).chain(bodies)
     }
 
     /// Index and description of the material with this name.

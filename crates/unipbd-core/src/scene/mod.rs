@@ -10,9 +10,11 @@ mod expect;
 mod layout;
 mod materials;
 mod nearest;
+mod points;
 mod problem;
 mod regions;
 mod settings;
+mod shorthand;
 mod sources;
 mod validate;
 mod walls;
@@ -24,8 +26,9 @@ pub use bodies::{
 pub use description::{Domain, Environment, Scene, View};
 pub use estimate::{BYTES_PER_PARTICLE, Estimate, SECONDS_PER_PARTICLE_AND_SUBSTEP};
 pub use expect::{BodyExpectation, Expect, MaterialExpectation};
-pub use materials::{Gas, Liquid, MaterialRef, Smoke};
+pub use materials::{Gas, Liquid, MaterialRef, Smoke, Solid};
 pub use nearest::nearest;
+pub use points::{PointMotion, Points};
 pub use problem::{KeyPath, KeySegment, Problem, Problems};
 pub use regions::{Heater, Injector, Region, Sink};
 pub use settings::{GradientPoint, SolverSettings, Substeps};
@@ -34,3 +37,4 @@ pub use walls::{HalfPlane, Obstacle, Side, Tank};
 pub use waves::Wave;
 
 pub(crate) use layout::{block_points, disc_points};
+pub(crate) use validate::FARTHEST;

@@ -101,7 +101,9 @@ impl Region {
     pub fn bounds(&self) -> [[f64; 2]; 2] {
         match (self.min, self.max, self.center, self.radius) {
             (Some(min), Some(max), _, _) => [min, max],
-            (_, _, Some(center), Some(radius)) => [center.map(|value| value - radius), center.map(|value| value + radius)],
+            (_, _, Some(center), Some(radius)) => {
+                [center.map(|value| value - radius), center.map(|value| value + radius)]
+            }
             _ => [[0.0; 2]; 2],
         }
     }

@@ -13,8 +13,8 @@ use crate::rng::Rng;
 use crate::rows::RowIndex;
 use crate::scene::{Emitter, Profile, Scene};
 
-/// Particles kept behind the face in each column.
-const ROWS_BEHIND: usize = 3;
+use super::saved::{ColumnState, EmitterState, ROWS_BEHIND};
+
 /// Mean compression ahead of the face at which the throttle begins to close.
 const THROTTLE_COMPRESSION: f64 = 0.02;
 
@@ -22,23 +22,6 @@ const THROTTLE_COMPRESSION: f64 = 0.02;
 pub struct EmitterSystem {
     emitters: Vec<Nozzle>,
     injectors: Vec<RegionInjector>,
-}
-
-/// What changes in an emitter while it runs: part of a saved state.
-#[derive(Clone, Debug, PartialEq)]
-pub struct EmitterState {
-    rng: u64,
-    running: bool,
-    throttle: f64,
-    columns: Vec<ColumnState>,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-struct ColumnState {
-    /// Way since the last particle crossed the face, in spacings [0, 1).
-    progress: f64,
-    /// Ids of the particles behind the face, the nearest first.
-    behind: [u32; ROWS_BEHIND],
 }
 
 struct Nozzle {
@@ -118,15 +101,30 @@ impl EmitterSystem {
             || self.injectors.iter().any(|injector| injector.will_change(time, dt))
     }
 
-    /// The changing part of each emitter.
-    pub fn states(&self) -> impl Iterator<Item = &EmitterState> {
-        self.emitters.iter().map(|nozzle| &nozzle.state)
+    /// Number of columns of each emitter.
+    pub fn columns(&self) -> impl Iterator<Item = usize> {
+        self.emitters.iter().map(|nozzle| nozzle.columns.len())
     }
 
-    /// Takes back what [`states`](Self::states) gave.
-    pub fn restore(&mut self, states: &[EmitterState]) {
-        for (nozzle, state) in self.emitters.iter_mut().zip(states) {
-            nozzle.state = state.clone();
+    /// What changes while the emitters run, in words: part of a saved state.
+    pub fn save(&self) -> Vec<u64> {
+        self.emitters.iter().flat_map(|nozzle| nozzle.state.words()).collect()
+    }
+
+    /// Whether [`restore`](Self::restore) would find words it can take.
+    pub fn accepts(&self, words: &[u64]) -> bool {
+        let mut words = words.iter().copied();
+        let read = |columns| EmitterState::from_words(&mut words, columns).is_some();
+        self.columns().all(read) && words.next().is_none()
+    }
+
+    /// Takes back what [`save`](Self::save) gave.
+    pub fn restore(&mut self, words: &[u64]) {
+        let mut words = words.iter().copied();
+        for nozzle in &mut self.emitters {
+            if let Some(state) = EmitterState::from_words(&mut words, nozzle.columns.len()) {
+                nozzle.state = state;
+            }
         }
     }
 }
@@ -191,7 +189,10 @@ impl Nozzle {
         if !self.state.running {
             return;
         }
-        self.state.throttle = if self.throttled { self.throttle(particles, neighbors) } else { 1.0 };
+        // Where particles were just removed, the rows of the list are gone: the throttle stays.
+        if self.throttled && neighbors.is_current() {
+            self.state.throttle = self.throttle(particles, neighbors);
+        }
         for index in 0..self.columns.len() {
             self.advance_column(index, dt, particles, rows);
         }

@@ -3,6 +3,7 @@
 mod emitter;
 mod injector;
 mod removal;
+mod saved;
 mod sink;
 
 pub use emitter::EmitterSystem;

@@ -1,11 +1,11 @@
 //! Removal: past its lifetime, outside the domain, or gas with no smoke near.
 
+use super::sink::RegionSink;
 use crate::math::{Real, Vector, Vector64, real, vector};
 use crate::neighbors::{Cursor, Grid, Periodic};
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
 use crate::phase::Phase;
-use super::sink::RegionSink;
 use crate::scene::{MaterialRef, Scene};
 
 /// The removal rules of a scene, applied once per frame.
@@ -35,7 +35,7 @@ impl Rule {
                 keep_age: real(gas.keep_age),
             },
             MaterialRef::Smoke(smoke) => Rule { lifetime: lifetime(smoke.lifetime), ..Rule::never() },
-            MaterialRef::Liquid(_) | MaterialRef::Rigid => Rule::never(),
+            MaterialRef::Liquid(_) | MaterialRef::Solid(_) | MaterialRef::Rigid => Rule::never(),
         }
     }
 

@@ -73,6 +73,9 @@ impl Solver {
     /// Density errors C = rho/rho0 - 1 at these positions by row; 0 without a density constraint.
     /// Measured when first asked for after a frame.
     pub fn density_errors(&self) -> &[Real] {
+        self.look_on_threads(|world| {
+            world.density_errors();
+        });
         self.world.density_errors()
     }
 

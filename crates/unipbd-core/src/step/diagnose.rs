@@ -1,7 +1,7 @@
 //! Diagnostics: sums and extremes over the state, computed when asked for.
 
-use super::Solver;
 use super::world::World;
+use super::{Solver, Stage};
 use crate::math::{Real, Vector64, wide};
 use crate::observe::{Diagnostics, GroupDiagnostics, MaterialDiagnostics};
 use crate::phase::Phase;
@@ -31,17 +31,22 @@ impl Sums {
 impl Solver {
     /// The state in numbers.
     pub fn diagnostics(&self) -> Diagnostics {
-        let world = &self.world;
-        let (clock, sums) = (&world.clock, world.sums());
-        let materials = world.material_diagnostics();
-        let fluids = || materials.iter().zip(&world.parts.materials).filter(|(_, material)| material.phase.is_fluid());
+        self.look_on_threads(World::diagnostics)
+    }
+}
+
+impl World {
+    fn diagnostics(&self) -> Diagnostics {
+        let (clock, sums) = (&self.clock, self.sums());
+        let materials = self.material_diagnostics();
+        let fluids = || materials.iter().zip(&self.parts.materials).filter(|(_, material)| material.phase.is_fluid());
         let fluid_count: u64 = fluids().map(|(diagnostics, _)| diagnostics.count).sum();
         let weighted: f64 = fluids().map(|(d, _)| d.density_error_mean * d.count as f64).sum();
         let mut count_by_phase = [0; Phase::ALL.len()];
-        for (diagnostics, material) in materials.iter().zip(&world.parts.materials) {
+        for (diagnostics, material) in materials.iter().zip(&self.parts.materials) {
             count_by_phase[material.phase as usize] += diagnostics.count;
         }
-        let groups = world.parts.groups.iter().filter_map(|group| {
+        let groups = self.parts.groups.iter().filter_map(|group| {
             Some(GroupDiagnostics { name: group.name().to_owned(), violation: group.violation()? })
         });
         Diagnostics {
@@ -49,13 +54,13 @@ impl Solver {
             frame: clock.frame,
             step: clock.step,
             substeps: clock.substeps,
-            iterations: clock.substeps * world.parts.iterations,
+            iterations: clock.substeps * self.parts.iterations,
             list_builds: clock.list_builds,
             count_by_phase,
             density_error_mean: if fluid_count > 0 { weighted / fluid_count as f64 } else { 0.0 },
             density_error_max: fluids().map(|(d, _)| d.density_error_max).fold(0.0, f64::max),
             density_error_min: fluids().map(|(d, _)| d.density_error_min).fold(0.0, f64::min),
-            pressure_max: world.pressure_max(),
+            pressure_max: self.pressure_max(),
             kinetic_energy: sums.kinetic,
             potential_energy: sums.potential,
             momentum: sums.momentum,
@@ -65,11 +70,14 @@ impl Solver {
             materials,
         }
     }
-}
 
-impl World {
     /// Density errors at the present positions by row; measured when first asked for.
     pub(super) fn density_errors(&self) -> &[Real] {
+        let searches = self.stages.contains(&Stage::FindNeighbors);
+        if searches && !self.parts.neighbors.is_current() {
+            // Within a frame that an error interrupted there may be no list: the last substep's must do.
+            return &self.parts.particles.density_error;
+        }
         self.measured.get_or_init(|| {
             let now = World::now(&self.parts, &self.rows, &self.clock);
             let measured = self.parts.groups.iter().find_map(|group| group.measure_density(now));

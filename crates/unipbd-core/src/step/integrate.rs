@@ -22,15 +22,10 @@ pub struct BodyForce {
 }
 
 /// u = dt v + dt^2 a, x = x_n + u, for every row that has inertia; rows moved by a script keep their velocity.
-pub(super) fn predict(
-    particles: &mut Particles,
-    forces: &[BodyForce],
-    extra: Option<&[Vector]>,
-    dt: Real,
-    parallelism: Parallelism,
-) {
+pub(super) fn predict(particles: &mut Particles, forces: &[BodyForce], dt: Real, parallelism: Parallelism) {
     let (materials, phases) = (&particles.material, &particles.phase);
     let (inverse_masses, temperatures) = (&particles.inverse_mass, &particles.temperature);
+    let accelerations = &particles.acceleration;
     parallelism.update(&mut particles.velocity, |row, velocity| {
         if inverse_masses[row] == 0.0 {
             return;
@@ -38,8 +33,8 @@ pub(super) fn predict(
         let force = &forces[usize::from(materials[row])];
         let factor = if force.thermal { temperatures[row] } else { 1.0 };
         *velocity += force.acceleration * (factor * dt);
-        if let Some(extra) = extra {
-            *velocity += extra[row] * dt;
+        if let Some(&acceleration) = accelerations.get(row) {
+            *velocity += acceleration * dt;
         }
     });
     particles.start.copy_from_slice(&particles.position);

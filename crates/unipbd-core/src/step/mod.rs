@@ -8,12 +8,16 @@ mod pipeline;
 mod solver;
 mod stages;
 mod substeps;
+mod threads;
 mod timings;
+mod view;
 mod world;
 
 pub use error::SolverError;
 pub use integrate::BodyForce;
 pub use pipeline::Stage;
 pub use solver::{FrameReport, Solver};
+pub(crate) use stages::ABSURD_SPEED;
 pub use substeps::{Choice, Demand, SubstepRule};
-pub(crate) use world::Parts;
+pub use view::SubstepView;
+pub(crate) use world::{Clock, Parts, Population};

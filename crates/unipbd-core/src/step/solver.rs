@@ -1,12 +1,16 @@
+use super::threads::Threads;
+use super::view::SubstepView;
 use super::world::{Parts, World};
 use super::{SolverError, Stage};
 use crate::constraints::ConstraintGroup;
-use crate::parallel::Parallelism;
 
 /// A running simulation. Made by [`Scene::build`](crate::scene::Scene::build).
+///
+/// The frame is the unit of time: [`step_frame`](Solver::step_frame) does as many substeps as the
+/// frame asks for, which only the state at its start decides.
 pub struct Solver {
     pub(crate) world: World,
-    pool: Option<rayon::ThreadPool>,
+    threads: Threads,
 }
 
 /// What one frame did.
@@ -23,11 +27,9 @@ pub struct FrameReport {
 }
 
 impl Solver {
-    /// A solver on this many threads; with one, no pool is made.
-    pub(crate) fn new(mut parts: Parts, threads: usize) -> Self {
-        let pool = (threads > 1).then(|| rayon::ThreadPoolBuilder::new().num_threads(threads).build().ok()).flatten();
-        parts.parallelism = if pool.is_some() { Parallelism::Pool } else { Parallelism::Serial };
-        Solver { world: World::new(parts), pool }
+    /// A solver on this many threads.
+    pub(crate) fn new(parts: Parts, threads: usize) -> Self {
+        Solver { world: World::new(parts), threads: Threads::new(threads) }
     }
 
     /// Advances by one frame and says what it did.
@@ -35,7 +37,42 @@ impl Solver {
     /// # Errors
     /// [`SolverError::Diverged`] when a particle is absurdly fast or its velocity not finite.
     pub fn step_frame(&mut self) -> Result<FrameReport, SolverError> {
-        self.on_threads(|world| world.frame(|_| ()))
+        self.on_threads(World::frame)
+    }
+
+    /// Advances by one frame and calls `hook` at the start of each of its substeps, on the calling
+    /// thread: for custom force fields and for particles moved by a script.
+    ///
+    /// ```no_run
+    /// # use unipbd_core::{Solver, SolverError, Vector};
+    /// # fn spring(solver: &mut Solver) -> Result<(), SolverError> {
+    /// solver.step_frame_with(|substep| -> Result<(), SolverError> {
+    ///     for row in 0..substep.ids().len() {
+    ///         let toward_origin = -9.0 * substep.positions()[row];
+    ///         substep.add_acceleration(row, toward_origin);
+    ///     }
+    ///     Ok(())
+    /// })?;
+    /// # Ok(())
+    /// # }
+    /// ```
+    ///
+    /// # Errors
+    /// What `hook` returns, and a [`SolverError`] turned into it. After an error of the hook the run
+    /// stands between two substeps; the next call goes on with the rest of the frame.
+    pub fn step_frame_with<E: From<SolverError>>(
+        &mut self,
+        mut hook: impl FnMut(&mut SubstepView<'_>) -> Result<(), E>,
+    ) -> Result<FrameReport, E> {
+        let begun = self.on_threads(World::begin_frame);
+        while self.world.begin_substep() {
+            if let Err(error) = hook(&mut SubstepView::new(&mut self.world)) {
+                self.world.parts.particles.clear_accelerations();
+                return Err(error);
+            }
+            self.on_threads(World::finish_substep)?;
+        }
+        Ok(self.world.end_frame(begun))
     }
 
     /// Projects the start without gravity until it is at rest density.
@@ -54,11 +91,26 @@ impl Solver {
         &self.world.stages
     }
 
-    fn on_threads<T: Send>(&mut self, work: impl FnOnce(&mut World) -> T + Send) -> T {
+    /// Threads in use. Never changes results.
+    pub fn threads(&self) -> usize {
+        self.threads.count()
+    }
+
+    /// From now on, uses this many threads.
+    pub fn set_threads(&mut self, threads: usize) {
+        self.threads = Threads::new(threads);
+    }
+
+    pub(crate) fn on_threads<T: Send>(&mut self, work: impl FnOnce(&mut World) -> T + Send) -> T {
         let world = &mut self.world;
-        match &self.pool {
-            Some(pool) => pool.install(|| work(world)),
-            None => work(world),
-        }
+        self.threads.run(world.parts.particles.len(), |parallelism| {
+            world.parts.parallelism = parallelism;
+            work(world)
+        })
+    }
+
+    /// For what only looks: the loops of `work` run as those of the last step did.
+    pub(crate) fn look_on_threads<T: Send>(&self, work: impl FnOnce(&World) -> T + Send) -> T {
+        self.threads.run(self.world.parts.particles.len(), |_| work(&self.world))
     }
 }

@@ -7,7 +7,7 @@ use crate::math::{Real, wide};
 use crate::neighbors::Prepared;
 
 /// Speed in spacings per frame beyond which a run has diverged.
-const ABSURD_SPEED: f64 = 1e6;
+pub(crate) const ABSURD_SPEED: f64 = 1e6;
 
 impl World {
     /// One substep: the stages, in order.
@@ -52,9 +52,8 @@ impl World {
 
     fn predict(&mut self) {
         let parts = &mut self.parts;
-        let extra = (self.extra.len() == parts.particles.len() && !self.extra.is_empty()).then_some(&self.extra[..]);
-        integrate::predict(&mut parts.particles, &parts.forces, extra, self.clock.dt as Real, parts.parallelism);
-        self.extra.clear();
+        integrate::predict(&mut parts.particles, &parts.forces, self.clock.dt as Real, parts.parallelism);
+        parts.particles.clear_accelerations();
     }
 
     fn predict_bodies(&mut self) {

@@ -10,7 +10,7 @@ use super::{FrameReport, SolverError, Stage};
 use crate::constraints::{ConstraintGroup, Corrections, Needs, Substep};
 use crate::effects::{Changes, Effect, SmokeAdvection};
 use crate::math::{Real, Vector, wide};
-use crate::neighbors::{Cover, Neighbors};
+use crate::neighbors::{Cover, Neighbors, SavedList};
 use crate::observe::{Event, Material, Severity};
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
@@ -57,13 +57,31 @@ pub(crate) struct Clock {
     /// Length of the last substep [s].
     pub dt: f64,
     pub substeps: u32,
+    /// Substeps done of a frame that an error interrupted.
+    pub done: u32,
     pub list_builds: u32,
     /// Largest pressure over density that a liquid may push with [m^2/s^2].
     pub pressure_limit: f64,
+    /// Whether the last frame was denied substeps.
+    pub capped: bool,
     /// Fastest dense particle after the last substep [m/s].
     pub speed: f64,
     /// Advances whenever particles are added or removed.
     pub generation: u64,
+}
+
+/// Where a frame began.
+pub(crate) struct Begun {
+    removed: u64,
+    ids: u32,
+    builds: u64,
+}
+
+/// Whether the rows are still those of the same particles.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Population {
+    Same,
+    Changed,
 }
 
 /// A run.
@@ -76,13 +94,10 @@ pub(crate) struct World {
     pub timings: Timings,
     /// Density errors at the positions of the last frame, once somebody asks for them.
     pub(super) measured: OnceLock<Vec<Real>>,
-    /// Accelerations by row that a user added for the next substep [m/s^2].
-    pub extra: Vec<Vector>,
     pub(super) corrections: Corrections,
     pub(super) changes: Changes,
     removed: Vec<u32>,
     pub(super) needs_rows: bool,
-    capped: bool,
 }
 
 impl World {
@@ -95,12 +110,10 @@ impl World {
             events: Vec::new(),
             timings: Timings::default(),
             measured: OnceLock::new(),
-            extra: Vec::new(),
             corrections: Corrections::default(),
             changes: Changes::default(),
             removed: Vec::new(),
             needs_rows: false,
-            capped: false,
         };
         world.plan();
         world
@@ -139,31 +152,78 @@ impl World {
         self.index_rows();
     }
 
-    /// One frame.
-    pub fn frame(&mut self, mut hook: impl FnMut(&mut World)) -> Result<FrameReport, SolverError> {
-        self.measured = OnceLock::new();
-        let removed = self.remove();
-        let ids_before = self.parts.particles.ids_given();
-        let builds_before = self.parts.neighbors.builds();
-        let substeps = self.choose_substeps();
-        self.clock.pressure_limit = self.pressure_limit();
-        let start = self.clock.frame as f64 * self.parts.frame_time;
-        self.clock.dt = self.parts.frame_time / f64::from(substeps);
-        self.clock.substeps = substeps;
-        for substep in 0..substeps {
-            self.clock.time = start + f64::from(substep) * self.clock.dt;
-            hook(self);
-            self.substep()?;
-            self.clock.step += 1;
+    /// One frame, or the rest of one that an error interrupted.
+    pub fn frame(&mut self) -> Result<FrameReport, SolverError> {
+        let begun = self.begin_frame();
+        while self.begin_substep() {
+            self.finish_substep()?;
         }
+        Ok(self.end_frame(begun))
+    }
+
+    /// Removes what is to go and decides how many substeps the frame takes.
+    pub fn begin_frame(&mut self) -> Begun {
+        self.measured = OnceLock::new();
+        let mut removed = 0;
+        if self.clock.done == 0 {
+            removed = self.remove();
+            self.clock.substeps = self.choose_substeps();
+            self.clock.pressure_limit = self.pressure_limit();
+            self.clock.dt = self.parts.frame_time / f64::from(self.clock.substeps);
+        }
+        Begun { removed, ids: self.parts.particles.ids_given(), builds: self.parts.neighbors.builds() }
+    }
+
+    /// Sets the clock to the next substep; false when the frame is done.
+    pub fn begin_substep(&mut self) -> bool {
+        let start = self.clock.frame as f64 * self.parts.frame_time;
+        self.clock.time = start + f64::from(self.clock.done) * self.clock.dt;
+        self.clock.done < self.clock.substeps
+    }
+
+    /// The stages of the substep.
+    pub fn finish_substep(&mut self) -> Result<(), SolverError> {
+        self.substep()?;
+        self.clock.step += 1;
+        self.clock.done += 1;
+        Ok(())
+    }
+
+    /// Sets the clock to the end of the frame.
+    pub fn end_frame(&mut self, begun: Begun) -> FrameReport {
         if let Some(rigid) = &mut self.parts.rigid {
             rigid.finish_frame(self.parts.frame_time);
         }
+        self.clock.done = 0;
         self.clock.frame += 1;
         self.clock.time = self.clock.frame as f64 * self.parts.frame_time;
-        self.clock.list_builds = (self.parts.neighbors.builds() - builds_before) as u32;
-        let emitted = u64::from(self.parts.particles.ids_given() - ids_before);
-        Ok(FrameReport { substeps, list_builds: self.clock.list_builds, emitted, removed })
+        self.clock.list_builds = (self.parts.neighbors.builds() - begun.builds) as u32;
+        FrameReport {
+            substeps: self.clock.substeps,
+            list_builds: self.clock.list_builds,
+            emitted: u64::from(self.parts.particles.ids_given() - begun.ids),
+            removed: begun.removed,
+        }
+    }
+
+    /// Makes the list of a saved state again, and forgets what was measured before.
+    pub fn restore_list(&mut self, list: &SavedList) {
+        self.measured = OnceLock::new();
+        self.parts.neighbors.restore(&self.parts.particles, list, self.parts.parallelism);
+        self.index_rows();
+    }
+
+    /// Rows were edited between two frames: speeds, ids and lists are found again.
+    pub fn edited(&mut self, population: Population) {
+        self.measured = OnceLock::new();
+        if population == Population::Changed {
+            self.population_changed();
+        }
+        self.clock.speed = self.fastest();
+        self.parts.particles.start_here();
+        if self.stages.contains(&Stage::FindNeighbors) {
+            self.find_neighbors();
+        }
     }
 
     /// Brings the start to its rest density: projection without gravity and without velocity.
@@ -209,7 +269,7 @@ impl World {
         let demand = self.demand();
         let choice = self.parts.substeps.choose(self.parts.frame_time, demand);
         let capped = choice.wanted > choice.substeps;
-        if capped && !self.capped {
+        if capped && !self.clock.capped {
             let message = format!(
                 "substeps capped at {}: {} were wanted for speed {:.3} m/s and pressure {:.3} m^2/s^2; \
                  raise solver.max_substeps to keep the target",
@@ -217,7 +277,7 @@ impl World {
             );
             self.events.push(Event { time: self.clock.time, severity: Severity::Warning, message });
         }
-        self.capped = capped;
+        self.clock.capped = capped;
         choice.substeps
     }
 

@@ -18,8 +18,8 @@ impl Density {
                 GradientPoint::Start => Some(now.particles.starts()),
             },
             weights: match self.settings.uniform_inverse_mass {
-                Some(inverse_mass) => Weights::Uniform(inverse_mass),
-                None => Weights::Column(now.particles.inverse_masses()),
+                Some(inverse_mass) if !now.particles.any_scripted() => Weights::Uniform(inverse_mass),
+                _ => Weights::Column(now.particles.inverse_masses()),
             },
         };
         let sums = &mut self.sums;

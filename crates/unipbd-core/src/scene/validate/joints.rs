@@ -16,7 +16,11 @@ pub(super) fn check(checker: &mut Checker) {
         if let Some(other) = &joint.other {
             check_body(checker, path.then("other"), other, &names);
             if *other == joint.body {
-                checker.problem(path.then("other"), "joins a body to itself", "leave it out for a joint with the world");
+                checker.problem(
+                    path.then("other"),
+                    "joins a body to itself",
+                    "leave it out for a joint with the world",
+                );
             }
         }
         check_values(checker, &path, joint);

@@ -22,6 +22,9 @@ pub(super) fn check(checker: &mut Checker) {
     for (index, smoke) in checker.scene.smoke.iter().enumerate() {
         check_lifetime(checker, &KeyPath::entry("smoke", index), smoke.lifetime);
     }
+    for (index, solid) in checker.scene.solid.iter().enumerate() {
+        checker.range(KeyPath::entry("solid", index).then("density"), solid.density, Allowed::Positive, DENSITY_HINT);
+    }
     let mut seen = BTreeMap::new();
     for (path, material) in with_paths(checker.scene) {
         check_name(checker, &path, material.name(), &mut seen);
@@ -61,7 +64,7 @@ fn check_name(checker: &mut Checker, path: &KeyPath, name: &str, seen: &mut BTre
         checker.problem(path.then("name"), "a material needs a name", "add a line such as name = \"water\"");
     } else if let Some(first) = seen.get(name) {
         let message = format!("the name \"{name}\" is taken by {first}");
-        checker.problem(path.then("name"), message, "names of liquids, gases and smokes must differ");
+        checker.problem(path.then("name"), message, "names of materials must differ");
     } else {
         seen.insert(name.to_owned(), path.clone());
     }
@@ -138,7 +141,8 @@ pub(super) fn excerpt(word: &str) -> String {
 }
 
 fn with_paths(scene: &Scene) -> Vec<(KeyPath, MaterialRef<'_>)> {
-    let counts = [("liquid", scene.liquid.len()), ("gas", scene.gas.len()), ("smoke", scene.smoke.len())];
-    let paths = counts.into_iter().flat_map(|(kind, count)| (0..count).map(move |index| KeyPath::entry(kind, index)));
+    let fluids = [("liquid", scene.liquid.len()), ("gas", scene.gas.len())];
+    let counts = fluids.into_iter().chain([("smoke", scene.smoke.len()), ("solid", scene.solid.len())]);
+    let paths = counts.flat_map(|(kind, count)| (0..count).map(move |index| KeyPath::entry(kind, index)));
     paths.zip(scene.materials()).collect()
 }

@@ -21,6 +21,7 @@ mod walls;
 
 use super::{Problems, Scene};
 use checker::Checker;
+pub(crate) use size::FARTHEST;
 
 impl Scene {
     /// Lists everything that is wrong with the scene; empty when it can be built.

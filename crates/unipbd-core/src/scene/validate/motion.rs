@@ -37,7 +37,8 @@ fn check_path(checker: &mut Checker, path: &KeyPath, motion: &MotionDescription)
     for (index, pair) in motion.path.windows(2).enumerate() {
         let [before, after] = [pair[0].time, pair[1].time];
         if after <= before {
-            let message = format!("must come after the last station at {} s, found {} s", number(before), number(after));
+            let message =
+                format!("must come after the last station at {} s, found {} s", number(before), number(after));
             let path = path.then("path").then_index(index + 1).then("time");
             checker.problem(path, message, "list the stations by increasing time");
         }

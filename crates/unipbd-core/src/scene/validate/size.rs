@@ -8,7 +8,7 @@ use crate::scene::{KeyPath, Scene};
 /// Scenes with this many particles are refused before anything is allocated.
 const TOO_MANY_PARTICLES: f64 = 1e8;
 /// Farthest coordinate, in spacings: single precision resolves a tenth of a spacing there.
-const FARTHEST: f64 = 1e6;
+pub(crate) const FARTHEST: f64 = 1e6;
 
 pub(super) fn check(checker: &mut Checker) {
     let Some(spacing) = checker.spacing else { return };
@@ -19,8 +19,10 @@ fn check_counts(checker: &mut Checker, spacing: f64) -> bool {
     let scene = checker.scene;
     let blocks = scene.block.iter().map(|block| block_counts(block, spacing).into_iter().product::<f64>());
     let discs = scene.disc.iter().map(|disc| disc_count(disc, spacing));
+    let points = scene.points.iter().map(|points| points.positions.len() as f64);
     let paths = |kind: &'static str| (0..).map(move |index| KeyPath::entry(kind, index));
-    let counts: Vec<(KeyPath, f64)> = paths("block").zip(blocks).chain(paths("disc").zip(discs)).collect();
+    let counts: Vec<(KeyPath, f64)> =
+        paths("block").zip(blocks).chain(paths("disc").zip(discs)).chain(paths("points").zip(points)).collect();
     let mut sane = true;
     for (path, count) in counts.iter().filter(|(_, count)| *count >= TOO_MANY_PARTICLES && count.is_finite()) {
         checker.problem(path.clone(), too_many("holds", *count), "make it smaller or raise `spacing`");
@@ -83,6 +85,10 @@ fn points(scene: &Scene) -> Vec<(KeyPath, [f64; 2])> {
     for (index, disc) in scene.disc.iter().enumerate() {
         add("disc", index, "center", disc.center);
         add("disc", index, "radius", [disc.radius, 0.0]);
+    }
+    for (index, set) in scene.points.iter().enumerate() {
+        let reach = set.positions.iter().flatten().fold(0.0, |reach: f64, value| reach.max(value.abs()));
+        add("points", index, "positions", [reach, 0.0]);
     }
     for (index, emitter) in scene.emitter.iter().enumerate() {
         add("emitter", index, "position", emitter.position);

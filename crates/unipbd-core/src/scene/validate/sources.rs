@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::checker::{Allowed, Checker, number, rounded};
 use super::materials::{check_reference, excerpt};
 use crate::phase::Phase;
-use crate::scene::{Emitter, KeyPath, Substeps};
+use crate::scene::{Emitter, KeyPath, PointMotion, Points, Substeps};
 
 const FLUIDS: [Phase; 2] = [Phase::Liquid, Phase::Gas];
 const JITTER_HINT: &str = "a fraction of the spacing, such as 0.1";
@@ -30,10 +30,35 @@ pub(super) fn check(checker: &mut Checker) {
         }
         check_filling(checker, &path, disc.velocity, disc.jitter);
     }
+    for (index, points) in scene.points.iter().enumerate() {
+        check_points(checker, &KeyPath::entry("points", index), points);
+    }
     check_emitters(checker);
-    if scene.block.is_empty() && scene.disc.is_empty() && scene.emitter.is_empty() && scene.body.is_empty() {
+    let none = scene.block.is_empty() && scene.disc.is_empty() && scene.emitter.is_empty() && scene.body.is_empty();
+    if none && scene.points.iter().all(|points| points.positions.is_empty()) {
         let message = "the scene has no particles: neither [[block]] nor [[disc]], [[emitter]] or [[body]]";
         checker.problem(KeyPath::default(), message, "add a [[block]] with material, min and max, and its [[liquid]]");
+    }
+}
+
+fn check_points(checker: &mut Checker, path: &KeyPath, points: &Points) {
+    check_reference(
+        checker,
+        path.then("material"),
+        &points.material,
+        &[FLUIDS[0], FLUIDS[1], Phase::Smoke, Phase::Solid],
+    );
+    let (given, wanted) = (points.velocities.len(), points.positions.len());
+    if given != 0 && given != wanted {
+        let message = format!("there are {given} velocities for {wanted} positions");
+        checker.problem(path.then("velocities"), message, "one for each position, or one `velocity` for all");
+    }
+    check_speed(checker, path.then("velocity"), points.velocity[0].hypot(points.velocity[1]));
+    let fastest = points.velocities.iter().map(|v| v[0].hypot(v[1])).fold(0.0, f64::max);
+    check_speed(checker, path.then("velocities"), fastest);
+    let smoke = checker.scene.smoke.iter().any(|smoke| smoke.name == points.material);
+    if smoke && points.motion == PointMotion::Scripted {
+        checker.problem(path.then("motion"), "smoke moves with its carrier, not by a script", "leave it out");
     }
 }
 

@@ -1,0 +1,102 @@
+//! An edit that was found sound is made.
+
+use std::ops::Range;
+
+use super::check::Checker;
+use super::{Change, Edit, EditError, Points, Values};
+use crate::math::{Vector, real, vector};
+use crate::particles::NewParticle;
+use crate::phase::MaterialIndex;
+use crate::rows::RowIndex;
+use crate::scene::PointMotion;
+use crate::step::{Population, Solver};
+
+impl Solver {
+    /// Makes all changes of an edit, or none. Returns the ids of the particles added.
+    ///
+    /// New particles may lie anywhere; two in the same place press each other away hard.
+    ///
+    /// # Errors
+    /// [`EditError`] says what is wrong; nothing has changed then.
+    pub fn apply(&mut self, edit: &Edit) -> Result<Range<u32>, EditError> {
+        Checker::new(self).check(edit)?;
+        let first = self.particles().ids_given();
+        if edit.is_empty() {
+            return Ok(first..first);
+        }
+        let mut rows = RowIndex::default();
+        rows.rebuild(self.ids());
+        edit.changes.iter().for_each(|change| self.change(change, &rows));
+        if let Some(rigid) = &mut self.world.parts.rigid {
+            edit.bodies.iter().for_each(|&(body, velocity)| rigid.bodies.set_velocity(body, velocity));
+        }
+        let mut removed: Vec<u32> = edit.removals.iter().filter_map(|&id| rows.row(id)).collect();
+        removed.sort_unstable();
+        self.world.parts.particles.remove_rows(&removed);
+        edit.additions.iter().for_each(|points| self.pour(points));
+        let last = self.particles().ids_given();
+        let same = removed.is_empty() && first == last;
+        let population = if same { Population::Same } else { Population::Changed };
+        self.on_threads(|world| world.edited(population));
+        Ok(first..last)
+    }
+
+    fn change(&mut self, change: &Change, rows: &RowIndex) {
+        let rows = change.ids.iter().filter_map(|&id| rows.row(id)).map(|row| row as usize);
+        let periodic = self.world.parts.neighbors.periodic();
+        let particles = &mut self.world.parts.particles;
+        match &change.values {
+            Values::Positions(positions) => {
+                for (row, &position) in rows.zip(positions) {
+                    particles.position[row] = periodic.wrap(vector(position));
+                    particles.remainder[row] = Vector::ZERO;
+                }
+            }
+            Values::Velocities(velocities) => {
+                for (row, &velocity) in rows.zip(velocities) {
+                    particles.velocity[row] = vector(velocity);
+                    if particles.phase[row].is_passive() {
+                        particles.displacement[row] = vector(velocity);
+                    }
+                }
+            }
+            Values::Temperatures(temperatures) => {
+                for (row, &temperature) in rows.zip(temperatures) {
+                    particles.temperature[row] = real(temperature);
+                }
+            }
+            Values::Motion(motion) => {
+                let area = self.world.parts.spacing * self.world.parts.spacing;
+                for row in rows {
+                    let density = self.world.parts.materials[usize::from(particles.material[row])].density;
+                    particles.inverse_mass[row] = motion.inverse_mass(density * area);
+                    if *motion == PointMotion::Scripted {
+                        particles.note_scripted();
+                    }
+                }
+            }
+        }
+    }
+
+    fn pour(&mut self, points: &Points) {
+        let parts = &mut self.world.parts;
+        let materials = parts.materials.iter().enumerate();
+        let Some((index, material)) = materials.into_iter().find(|(_, material)| material.name == points.material)
+        else {
+            return;
+        };
+        let mass = material.density * parts.spacing * parts.spacing;
+        let periodic = parts.neighbors.periodic();
+        for (number, &position) in points.positions.iter().enumerate() {
+            let velocity = points.velocities.get(number).copied().unwrap_or(points.velocity);
+            parts.particles.push(NewParticle {
+                position: periodic.wrap(vector(position)),
+                velocity: vector(velocity),
+                inverse_mass: points.motion.inverse_mass(mass),
+                material: index as MaterialIndex,
+                phase: material.phase,
+                temperature: real(points.temperature),
+            });
+        }
+    }
+}

@@ -1,0 +1,66 @@
+//! What changes in an emitter while it runs: part of a saved state.
+
+/// Particles kept behind the face in each column.
+pub(super) const ROWS_BEHIND: usize = 3;
+
+/// The changing part of an emitter.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct EmitterState {
+    pub rng: u64,
+    pub running: bool,
+    pub throttle: f64,
+    pub columns: Vec<ColumnState>,
+}
+
+/// The changing part of one column of its face.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct ColumnState {
+    /// Way since the last particle crossed the face, in spacings [0, 1).
+    pub progress: f64,
+    /// Ids of the particles behind the face, the nearest first.
+    pub behind: [u32; ROWS_BEHIND],
+}
+
+impl EmitterState {
+    /// The state as words.
+    pub fn words(&self) -> Vec<u64> {
+        let mut words = vec![self.rng, u64::from(self.running), self.throttle.to_bits()];
+        for column in &self.columns {
+            words.push(column.progress.to_bits());
+            words.extend(column.behind.map(u64::from));
+        }
+        words
+    }
+
+    /// The state from words; `None` where they mean nothing.
+    pub fn from_words(words: &mut impl Iterator<Item = u64>, columns: usize) -> Option<Self> {
+        let (rng, running) = (words.next()?, words.next()?);
+        let part = |word: u64| Some(f64::from_bits(word)).filter(|part| (0.0..=1.0).contains(part));
+        let throttle = part(words.next()?)?;
+        let mut states = Vec::with_capacity(columns);
+        for _ in 0..columns {
+            let progress = part(words.next()?)?;
+            let mut behind = [0; ROWS_BEHIND];
+            for id in &mut behind {
+                *id = u32::try_from(words.next()?).ok()?;
+            }
+            states.push(ColumnState { progress, behind });
+        }
+        Some(EmitterState { rng, running: running != 0, throttle, columns: states })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn words_give_the_same_emitter_back_and_nonsense_gives_none() {
+        let column = ColumnState { progress: 0.25, behind: [7, 8, 9] };
+        let state = EmitterState { rng: 5, running: true, throttle: 0.5, columns: vec![column; 2] };
+        let words = state.words();
+        assert_eq!(EmitterState::from_words(&mut words.iter().copied(), 2), Some(state));
+        assert_eq!(EmitterState::from_words(&mut words.iter().copied(), 3), None);
+        assert_eq!(EmitterState::from_words(&mut [1, 1, f64::NAN.to_bits()].into_iter(), 0), None);
+    }
+}

@@ -1,0 +1,59 @@
+//! The state of a run: saved, restored, written as bytes, hashed.
+//!
+//! A [`State`] holds everything that a run goes on from, bit for bit: columns in row order with their
+//! rounding remainders, multipliers, the reference positions and the skin of the neighbour list (the
+//! same list is made from them again), clock, emitters, groups. Saving never changes a run.
+
+mod bodies;
+mod check;
+mod error;
+mod file;
+mod hash;
+mod save;
+mod structure;
+
+pub use error::StateError;
+
+use crate::neighbors::SavedList;
+use crate::particles::Particles;
+use crate::step::Clock;
+
+/// A saved moment of a run. [`Solver::save`](crate::Solver::save) makes one,
+/// [`Solver::restore`](crate::Solver::restore) goes back to it; as bytes it goes into files.
+#[derive(Clone, Debug)]
+pub struct State {
+    structure: Vec<String>,
+    clock: Clock,
+    particles: Particles,
+    list: SavedList,
+    sections: Vec<Section>,
+}
+
+/// What one part of a run (emitters, a constraint group) needs beside the particles.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Section {
+    name: String,
+    words: Vec<u64>,
+}
+
+impl State {
+    /// Simulated time [s].
+    pub fn time(&self) -> f64 {
+        self.clock.time
+    }
+
+    /// Frames done.
+    pub fn frame(&self) -> u64 {
+        self.clock.frame
+    }
+
+    /// Substeps done.
+    pub fn step(&self) -> u64 {
+        self.clock.step
+    }
+
+    /// Number of particles.
+    pub fn particles(&self) -> usize {
+        self.particles.len()
+    }
+}

@@ -1,0 +1,118 @@
+use super::error::damaged;
+use super::structure::structure;
+use super::{Section, State, StateError, bodies};
+use crate::math::real;
+use crate::rigid::RigidBodies;
+use crate::step::{Clock, Solver};
+
+const EMITTERS: &str = "emitters";
+const SMOKE: &str = "smoke";
+const BODIES: &str = "bodies";
+
+impl Solver {
+    /// Everything this run goes on from. Changes nothing.
+    ///
+    /// Not part of it: what was said about the run so far (events not yet taken, timings).
+    pub fn save(&self) -> State {
+        let parts = &self.world.parts;
+        let mut sections = Vec::new();
+        let mut section = |name: &str, words| sections.push(Section { name: name.to_owned(), words });
+        if let Some(emitters) = &parts.emitters {
+            section(EMITTERS, emitters.save());
+        }
+        if let Some(smoke) = &parts.smoke {
+            section(SMOKE, vec![f64::from(smoke.last_dt()).to_bits()]);
+        }
+        if let Some(rigid) = &parts.rigid {
+            section(BODIES, bodies::to_words(rigid));
+        }
+        for group in &parts.groups {
+            section(group.name(), group.save());
+        }
+        State {
+            structure: structure(self),
+            clock: self.world.clock,
+            particles: parts.particles.clone(),
+            list: parts.neighbors.saved(),
+            sections,
+        }
+    }
+
+    /// Goes back (or on) to a saved moment: from here the run goes on bit for bit as the saved one
+    /// did, on any number of threads. Works for a state of any run of the same scene and seed.
+    /// Constraint groups that were added to the saved run must have been added to this one too.
+    ///
+    /// # Errors
+    /// [`StateError::OtherScene`] where the state is of a scene that is built differently; nothing
+    /// has changed then.
+    pub fn restore(&mut self, state: &State) -> Result<(), StateError> {
+        self.accept(state)?;
+        let rigid = self.saved_bodies(state)?;
+        let generation = self.world.clock.generation;
+        let world = &mut self.world;
+        let mut sections = state.sections.iter();
+        let mut next = || sections.next().map_or(&[][..], |section| &section.words);
+        if let Some(emitters) = &mut world.parts.emitters {
+            emitters.restore(next());
+        }
+        if let Some(smoke) = &mut world.parts.smoke {
+            smoke.set_last_dt(real(next().first().copied().map_or(0.0, f64::from_bits)));
+        }
+        if rigid.is_some() {
+            next();
+            world.parts.rigid = rigid;
+        }
+        for group in &mut world.parts.groups {
+            group.restore(next());
+        }
+        // Ids may be others than before, so nobody may take the generation for the one it knew.
+        let generation = generation.max(state.clock.generation) + 1;
+        world.clock = Clock { generation, ..state.clock };
+        world.parts.particles.clone_from(&state.particles);
+        self.on_threads(|world| world.restore_list(&state.list));
+        Ok(())
+    }
+
+    /// The bodies of a state, where the run has some.
+    fn saved_bodies(&self, state: &State) -> Result<Option<RigidBodies>, StateError> {
+        let Some(running) = &self.world.parts.rigid else { return Ok(None) };
+        let section = state.sections.iter().find(|section| section.name == BODIES);
+        let words = section.map_or(&[][..], |section| &section.words);
+        bodies::from_words(words, running).map(Some)
+    }
+
+    /// Whether the state belongs to a run like this one.
+    fn accept(&self, state: &State) -> Result<(), StateError> {
+        let running = structure(self);
+        for (index, running) in running.iter().enumerate() {
+            let saved = state.structure.get(index).map_or("nothing", |line| line);
+            if saved != running {
+                return Err(StateError::OtherScene { saved: saved.to_owned(), running: running.clone() });
+            }
+        }
+        let parts = &self.world.parts;
+        let names = parts.emitters.iter().map(|_| EMITTERS).chain(parts.smoke.iter().map(|_| SMOKE));
+        let names = names.chain(parts.rigid.iter().map(|_| BODIES));
+        let names = names.chain(parts.groups.iter().map(|group| group.name()));
+        if !names.eq(state.sections.iter().map(|section| &section.name[..])) {
+            return Err(damaged("it lacks a part of the run"));
+        }
+        if let Some(emitters) = &parts.emitters
+            && state.sections.first().is_none_or(|section| !emitters.accepts(&section.words))
+        {
+            return Err(damaged("its emitters make no sense"));
+        }
+        let materials = &parts.materials;
+        let particles = &state.particles;
+        let known = |row: usize| materials.get(usize::from(particles.material[row])).map(|material| material.phase);
+        if (0..particles.len()).any(|row| known(row) != Some(particles.phase[row])) {
+            return Err(damaged("a particle is of no material of the scene"));
+        }
+        let optional = parts.particles.optional();
+        let rows = |wanted: bool| if wanted { particles.len() } else { 0 };
+        if particles.temperature.len() != rows(optional.temperature) || particles.age.len() != rows(optional.age) {
+            return Err(damaged("a column is missing"));
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,69 @@
+use std::sync::{Arc, Mutex, PoisonError};
+
+use rayon::{ThreadPool, ThreadPoolBuilder};
+
+use crate::parallel::{Parallelism, SERIAL_BELOW};
+
+/// The threads of a run. The pool is made when there is first enough to do for it, and anew in a
+/// forked child, which inherits the memory of a pool but not its threads.
+pub(crate) struct Threads {
+    count: usize,
+    made: Mutex<Option<Made>>,
+}
+
+struct Made {
+    process: u32,
+    /// `None` where the system gave no threads.
+    pool: Option<Arc<ThreadPool>>,
+}
+
+impl Threads {
+    /// At most this many threads; with one, no pool is ever made.
+    pub fn new(count: usize) -> Self {
+        Threads { count: count.max(1), made: Mutex::new(None) }
+    }
+
+    /// Number of threads.
+    pub fn count(&self) -> usize {
+        self.count
+    }
+
+    /// The pool for a loop over this many rows, where one pays.
+    pub fn pool(&self, rows: usize) -> Option<Arc<ThreadPool>> {
+        if self.count == 1 || rows < SERIAL_BELOW {
+            return None;
+        }
+        let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
+        let process = std::process::id();
+        if made.as_ref().is_none_or(|made| made.process != process) {
+            let pool = ThreadPoolBuilder::new().num_threads(self.count).build().ok().map(Arc::new);
+            let inherited = made.replace(Made { process, pool });
+            // Its threads live in the parent: there is nothing here to be joined or woken.
+            std::mem::forget(inherited);
+        }
+        made.as_ref().and_then(|made| made.pool.clone())
+    }
+
+    /// Runs `work` where its loops find the pool, and tells it whether there is one.
+    pub fn run<T: Send>(&self, rows: usize, work: impl FnOnce(Parallelism) -> T + Send) -> T {
+        match self.pool(rows) {
+            Some(pool) => pool.install(|| work(Parallelism::Pool)),
+            None => work(Parallelism::Serial),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn no_pool_is_made_for_few_rows_or_one_thread() {
+        assert!(Threads::new(1).pool(1_000_000).is_none());
+        let threads = Threads::new(2);
+        assert!(threads.pool(SERIAL_BELOW - 1).is_none());
+        assert_eq!(threads.run(SERIAL_BELOW, |_| rayon::current_num_threads()), 2);
+        let first = threads.pool(SERIAL_BELOW).unwrap();
+        assert!(Arc::ptr_eq(&first, &threads.pool(SERIAL_BELOW).unwrap()), "the pool is kept");
+    }
+}

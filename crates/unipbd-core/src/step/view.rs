@@ -1,0 +1,82 @@
+use super::world::World;
+use crate::math::{Real, Vector};
+use crate::observe::Material;
+use crate::particles::Particles;
+
+/// A run at the start of a substep, as a hook sees it
+/// (see [`Solver::step_frame_with`](crate::Solver::step_frame_with)).
+pub struct SubstepView<'a> {
+    world: &'a mut World,
+}
+
+impl<'a> SubstepView<'a> {
+    pub(super) fn new(world: &'a mut World) -> Self {
+        SubstepView { world }
+    }
+
+    /// Simulated time at the start of the substep [s].
+    pub fn time(&self) -> f64 {
+        self.world.clock.time
+    }
+
+    /// Length of the substep [s].
+    pub fn dt(&self) -> f64 {
+        self.world.clock.dt
+    }
+
+    /// Substeps done since the start.
+    pub fn step(&self) -> u64 {
+        self.world.clock.step
+    }
+
+    /// The particles. Rows are those of this substep alone.
+    pub fn particles(&self) -> &Particles {
+        &self.world.parts.particles
+    }
+
+    /// Positions by row [m].
+    pub fn positions(&self) -> &[Vector] {
+        self.particles().positions()
+    }
+
+    /// Velocities by row [m/s].
+    pub fn velocities(&self) -> &[Vector] {
+        self.particles().velocities()
+    }
+
+    /// Stable ids by row.
+    pub fn ids(&self) -> &[u32] {
+        self.particles().ids()
+    }
+
+    /// The materials, by [`MaterialIndex`](crate::MaterialIndex).
+    pub fn materials(&self) -> &[Material] {
+        &self.world.parts.materials
+    }
+
+    /// Adds to the acceleration of one row in this substep [m/s^2]. Particles moved by a script and
+    /// smoke do not feel it.
+    pub fn add_acceleration(&mut self, row: usize, acceleration: Vector) {
+        self.accelerations_mut()[row] += acceleration;
+    }
+
+    /// Accelerations by row in this substep, beside the gravity of the scene [m/s^2].
+    pub fn accelerations_mut(&mut self) -> &mut [Vector] {
+        self.world.parts.particles.accelerations_mut()
+    }
+
+    /// Sets the velocity of one row [m/s]: how a particle moved by a script is moved. The position
+    /// follows in this substep.
+    ///
+    /// # Panics
+    /// Where the velocity is not finite.
+    pub fn set_velocity(&mut self, row: usize, velocity: Vector) {
+        assert!(velocity.is_finite(), "velocities are finite");
+        self.world.parts.particles.velocity[row] = velocity;
+    }
+
+    /// Inverse mass of one row [1/kg]; 0 where it is moved by a script.
+    pub fn inverse_mass(&self, row: usize) -> Real {
+        self.particles().inverse_masses()[row]
+    }
+}

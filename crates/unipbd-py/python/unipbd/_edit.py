@@ -1,0 +1,237 @@
+"""Changes of particles between two frames."""
+
+from __future__ import annotations
+
+from types import TracebackType
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._arrays import Doubles, Ids, numbers, pairs, points
+from ._errors import EditError
+from ._phase import Phase
+from ._substep import id_list
+
+if TYPE_CHECKING:
+    from ._simulation import Simulation
+
+
+class Column:
+    """A column of particles to be changed, by id.
+
+    The key is an array of ids, one id, a boolean mask over all particles in ascending order of
+    ids, or ``:`` for all but the samples of rigid bodies. Reading gives a copy; ``e.velocities[ids] *= 0.5`` works.
+    """
+
+    __slots__ = ("_changed", "_edit", "_name", "_values")
+
+    def __init__(self, edit: Edit, name: str, values: Doubles) -> None:
+        self._edit = edit
+        self._name = name
+        self._values = values
+        self._changed = np.zeros(len(values), dtype=bool)
+
+    def __getitem__(self, key: Any) -> Doubles:
+        values: Doubles = self._values[self._edit._rows(key)]
+        return values[0] if _is_one(key) else values
+
+    def __setitem__(self, key: Any, value: npt.ArrayLike) -> None:
+        rows = self._edit._rows(key)
+        if self._values.ndim == 2:
+            new = pairs(value, len(rows), self._name, EditError)
+        else:
+            try:
+                new = np.broadcast_to(numbers(value, self._name, EditError), (len(rows),))
+            except ValueError as error:
+                raise EditError(f"{self._name} do not fit {len(rows)} particles: {error}") from None
+        if not np.all(np.isfinite(new)):
+            raise EditError(f"{self._name} must be finite numbers")
+        self._values[rows] = new
+        self._changed[rows] = True
+
+    def __len__(self) -> int:
+        return len(self._values)
+
+    def __array__(self, dtype: Any = None, copy: bool | None = None) -> Doubles:
+        return np.array(self._values, dtype=dtype)
+
+    def __repr__(self) -> str:
+        return f"<{self._name} of {len(self)} particles, {int(self._changed.sum())} changed>"
+
+
+class BodyEdit:
+    """A dynamic rigid body whose velocity is to be changed. See `Edit.bodies`."""
+
+    def __init__(self, name: str, velocity: Doubles, angular_velocity: float) -> None:
+        self._name = name
+        self._velocity = velocity
+        self._angular_velocity = angular_velocity
+        self._changed = False
+
+    @property
+    def velocity(self) -> Doubles:
+        """Velocity of the centre of mass [m/s], shape (2,), to be set."""
+        return self._velocity
+
+    @velocity.setter
+    def velocity(self, value: npt.ArrayLike) -> None:
+        self._velocity = pairs(value, 1, f"velocity of {self._name!r}", EditError)[0]
+        self._changed = True
+
+    @property
+    def angular_velocity(self) -> float:
+        """Angular velocity, counter-clockwise [rad/s], to be set."""
+        return self._angular_velocity
+
+    @angular_velocity.setter
+    def angular_velocity(self, value: float) -> None:
+        self._angular_velocity = float(value)
+        self._changed = True
+
+
+class Edit:
+    """Changes of particles, made together when the `with` block ends. See `Simulation.edit`.
+
+    Where anything is wrong - an unknown id, a wrong shape, a number that is not finite - an
+    `EditError` is raised and nothing has changed; an exception within the block leaves everything
+    as it was, too. Values are set first, then particles are removed, then new ones added.
+    """
+
+    def __init__(self, simulation: Simulation) -> None:
+        self._simulation = simulation
+        self._open = False
+
+    def __enter__(self) -> Edit:
+        simulation = self._simulation
+        self._ids: Ids = simulation.ids
+        self._moment = (simulation.substeps, len(self._ids))
+        self.positions = Column(self, "positions", simulation.positions.astype(np.float64))
+        """Positions [m], to be set by id."""
+        self.velocities = Column(self, "velocities", simulation.velocities.astype(np.float64))
+        """Velocities [m/s], to be set by id."""
+        temperatures = simulation.temperatures
+        self._temperatures = (
+            None if temperatures is None else Column(self, "temperatures", temperatures.astype(np.float64))
+        )
+        self.bodies = {
+            name: BodyEdit(name, body.velocity, body.angular_velocity) for name, body in simulation.bodies.items()
+        }
+        """Rigid bodies by name, to set their ``velocity`` and ``angular_velocity``."""
+        self._free = simulation.phases != Phase.RIGID
+        self._motions: list[tuple[str, list[int], str]] = []
+        self._removed: set[int] = set()
+        self._added: list[dict[str, Any]] = []
+        self._open = True
+        self.added: Ids = np.empty(0, dtype=np.uint32)
+        """Ids of the particles that were added, after the block."""
+        return self
+
+    @property
+    def temperatures(self) -> Column:
+        """Temperatures, to be set by id. Raises `EditError` in a scene without gas."""
+        if self._temperatures is None:
+            raise EditError("the scene has no gas, so no temperatures")
+        return self._temperatures
+
+    @property
+    def ids(self) -> Ids:
+        """Ids before the edit, in ascending order, shape (N,)."""
+        return self._ids
+
+    def remove(self, which: Any) -> None:
+        """Removes particles: an array of ids, or a boolean mask over all of them."""
+        self._removed.update(self._ids[self._rows(which)].tolist())
+
+    def add(
+        self,
+        material: str,
+        positions: npt.ArrayLike,
+        velocities: npt.ArrayLike = (0.0, 0.0),
+        temperature: float = 0.0,
+        motion: str = "free",
+    ) -> None:
+        """Adds particles of a material at `positions`, shape (N, 2) [m].
+
+        `velocities` [m/s] is one vector or an array of shape (N, 2). With ``motion="scripted"`` only
+        their velocity moves them. Their ids are in `added` after the block.
+        """
+        where = points(positions, "positions", EditError)
+        self._added.append(
+            {
+                "material": material,
+                "positions": where,
+                "velocities": pairs(velocities, len(where), "velocities", EditError),
+                "temperature": float(temperature),
+                "motion": motion,
+            }
+        )
+
+    def script(self, which: Any) -> None:
+        """From now on only their velocity moves these particles, and nothing but you changes it."""
+        self._motions.append(("motion", self._ids[self._rows(which)].tolist(), "scripted"))
+
+    def free(self, which: Any) -> None:
+        """Lets particles go that a script has moved."""
+        self._motions.append(("motion", self._ids[self._rows(which)].tolist(), "free"))
+
+    def _rows(self, key: Any) -> npt.NDArray[np.intp]:
+        """Rows of the columns of this edit that a key means."""
+        if not self._open:
+            raise EditError("an edit is used within its with block")
+        if isinstance(key, slice):
+            if key != slice(None):
+                raise EditError("particles are named by ids, by a mask, or all by [:]")
+            # Samples of rigid bodies go where their body goes.
+            return np.flatnonzero(self._free)
+        array = np.asarray(key)
+        if array.dtype == bool:
+            if array.shape != self._ids.shape:
+                raise EditError(f"a mask must have shape {self._ids.shape}, not {array.shape}")
+            return np.flatnonzero(array)
+        try:
+            wanted = np.asarray(id_list(key), dtype=np.int64)
+        except ValueError as error:
+            raise EditError(str(error)) from None
+        if len(np.unique(wanted)) != len(wanted):
+            raise EditError("an id is given twice")
+        rows = np.searchsorted(self._ids, wanted)
+        found = np.zeros(len(wanted), dtype=bool)
+        inside = rows < len(self._ids)
+        found[inside] = self._ids[rows[inside]] == wanted[inside]
+        if not found.all():
+            raise EditError(f"there is no particle with id {wanted[~found][0]}")
+        return rows
+
+    def _changes(self) -> list[tuple[str, list[int], Any]]:
+        columns = [self.positions, self.velocities]
+        if self._temperatures is not None:
+            columns.append(self._temperatures)
+        changes: list[tuple[str, list[int], Any]] = []
+        for column in columns:
+            if column._changed.any():
+                values = np.ascontiguousarray(column._values[column._changed])
+                changes.append((column._name, self._ids[column._changed].tolist(), values))
+        return changes + list(self._motions)
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if not self._open or kind is not None:
+            self._open = False
+            return
+        self._open = False
+        native = self._simulation._native
+        if self._moment != (native.substeps_done, native.count):
+            raise EditError("the simulation was stepped or edited within the edit")
+        bodies = [
+            (index, body.velocity.tolist(), body.angular_velocity)
+            for index, body in enumerate(self.bodies.values())
+            if body._changed
+        ]
+        first, last = native.apply(self._changes(), sorted(self._removed), self._added, bodies)
+        self.added = np.arange(first, last, dtype=np.uint32)
+
+
+def _is_one(key: Any) -> bool:
+    return not isinstance(key, slice) and np.ndim(key) == 0

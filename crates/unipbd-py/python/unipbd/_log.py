@@ -1,0 +1,167 @@
+"""Reading recorded runs."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _native
+from ._arrays import Floats, Ids
+from ._phase import Phase
+from ._scene import Scene
+
+if TYPE_CHECKING:
+    import pandas
+
+
+@dataclass(frozen=True)
+class LogFrame:
+    """One frame of a log. Arrays have one row per particle in ascending order of ids."""
+
+    time: float
+    """Simulated time [s]."""
+    positions: Floats = field(repr=False)
+    """Positions [m], float32, shape (N, 2)."""
+    ids: Ids = field(repr=False)
+    """Ids, uint32, shape (N,)."""
+    phases: npt.NDArray[np.uint8] = field(repr=False)
+    """Phases, uint8, shape (N,)."""
+    material_indices: npt.NDArray[np.uint16] = field(repr=False)
+    """Indices into `Log.materials`, uint16, shape (N,)."""
+    velocities: Floats | None = field(repr=False)
+    """Velocities [m/s], shape (N, 2), where they were recorded."""
+    density_errors: Floats | None = field(repr=False)
+    """Density errors C, as fractions, shape (N,), where they were recorded."""
+    temperatures: Floats | None = field(repr=False)
+    """Temperatures, shape (N,), where they were recorded."""
+    bodies: Mapping[str, Mapping[str, Any]] = field(repr=False)
+    """Rigid bodies by name: position, angle, velocity, fluid_force and so on."""
+    diagnostics: Mapping[str, Any] | None = field(repr=False)
+    """The state in numbers, as `Simulation.diagnostics`, with the ``state_hash``."""
+    events: list[tuple[float, str, str]] = field(repr=False)
+    """What happened since the frame before: (time, severity, message)."""
+
+    def to_dict(self) -> dict[str, Any]:
+        """The columns of the particles by name, two for vectors: for tables and data frames."""
+        columns: dict[str, Any] = {
+            "time": np.full(len(self.ids), self.time),
+            "id": self.ids,
+            "phase": self.phases,
+            "material": self.material_indices,
+            "x": self.positions[:, 0],
+            "y": self.positions[:, 1],
+        }
+        if self.velocities is not None:
+            columns |= {"vx": self.velocities[:, 0], "vy": self.velocities[:, 1]}
+        if self.density_errors is not None:
+            columns["density_error"] = self.density_errors
+        if self.temperatures is not None:
+            columns["temperature"] = self.temperatures
+        return columns
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The particles as a data frame indexed by id (needs pandas)."""
+        import pandas
+
+        return pandas.DataFrame(self.to_dict()).set_index("id")
+
+    def to_xarray_dict(self) -> dict[str, Any]:
+        """What `xarray.Dataset.from_dict` takes."""
+        columns = self.to_dict()
+        return {
+            "coords": {"id": {"dims": "id", "data": columns.pop("id")}},
+            "attrs": {"time": self.time},
+            "dims": {"id": len(self.ids)},
+            "data_vars": {name: {"dims": "id", "data": values} for name, values in columns.items()},
+        }
+
+
+class Log:
+    """A recorded run: iterate over it for its frames, as often as you like. See `read_log`."""
+
+    def __init__(self, path: str | os.PathLike[str]) -> None:
+        self.path = os.fspath(path)
+        """Where the log is."""
+        header = _native.LogReader(self.path).header()
+        self.name: str = header["name"]
+        """Title of the scene."""
+        self.seed: int = header["seed"]
+        """Seed of the run."""
+        self.fps: float = header["fps"]
+        """Frames per simulated second [1/s]."""
+        self.spacing: float = header["spacing"]
+        """Rest distance of particles [m]."""
+        self.version: str = header["version"]
+        """Version of unipbd that wrote it."""
+        self.scene_text: str = header["scene"]
+        """The scene file of the run."""
+        self.overrides: list[str] = header["overrides"]
+        """Changes to the scene from the command line, ``key=value``."""
+        self.materials: list[str] = [material["name"] for material in header["materials"]]
+        """Names of the materials, by index."""
+        self.phases: list[Phase] = [Phase(material["phase"]) for material in header["materials"]]
+        """Phases of the materials, by index."""
+        self._fields: list[str] = header["fields"].split(",")
+        self._frames: int | None = header["frames"]
+        self._truncated = self._frames is None
+
+    @property
+    def scene(self) -> Scene:
+        """The scene of the run, without the overrides of the command line."""
+        return Scene.from_toml(self.scene_text, self.path)
+
+    @property
+    def truncated(self) -> bool:
+        """Whether the run was cut off: all frames up to the cut can be read."""
+        return self._truncated
+
+    def __iter__(self) -> Iterator[LogFrame]:
+        reader = _native.LogReader(self.path)
+        while (frame := reader.next_frame()) is not None:
+            bodies = {body["name"]: body for body in frame.pop("bodies")}
+            if len(frame["ids"]) == 0:
+                frame |= self._empty_columns()
+            yield LogFrame(bodies=bodies, **frame)
+
+    def _empty_columns(self) -> dict[str, Any]:
+        """Recorded columns of a frame without particles: empty, not missing."""
+        shapes = {"velocity": ("velocities", (0, 2)), "density": ("density_errors", (0,))}
+        known = [shapes[word] for word in self._fields if word in shapes]
+        return {name: np.empty(shape, dtype=np.float32) for name, shape in known}
+
+    def __len__(self) -> int:
+        if self._frames is None:
+            self._frames = sum(1 for _ in self)
+        return self._frames
+
+    def diagnostics(self) -> dict[str, npt.NDArray[Any]]:
+        """The numbers of all frames as arrays by name, shape (frames,): for plots and tables."""
+        rows = [frame.diagnostics for frame in self if frame.diagnostics is not None]
+        names = [name for name, value in rows[0].items() if isinstance(value, (int, float))] if rows else []
+        return {name: np.array([row[name] for row in rows]) for name in names}
+
+    def to_pandas(self) -> pandas.DataFrame:
+        """The numbers of all frames as a data frame indexed by time (needs pandas)."""
+        import pandas
+
+        return pandas.DataFrame(self.diagnostics()).set_index("time")
+
+    def __repr__(self) -> str:
+        count = "cut off" if self.truncated else f"{len(self)} frames"
+        return f"<unipbd.Log {self.path!r}: {self.name!r}, {count}>"
+
+
+def read_log(path: str | os.PathLike[str]) -> Log:
+    """Opens a log that `Simulation.record` or the `unipbd` command wrote::
+
+        for frame in up.read_log("run.mcap"):
+            print(frame.time, frame.positions.mean(axis=0))
+
+    Raises `RecordingError` for a file that is something else or damaged.
+    """
+    return Log(path)

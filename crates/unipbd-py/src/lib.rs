@@ -1,0 +1,44 @@
+//! The native part of the Python package `unipbd`: what is slow in Python or only known in Rust.
+//! The package around it (python/unipbd) gives it names, documentation and manners.
+
+mod arrays;
+mod body;
+mod command;
+mod convert;
+mod diagnostics;
+mod edit;
+mod errors;
+mod group;
+mod hook;
+mod log;
+mod order;
+mod picture;
+mod pool;
+mod recording;
+mod scene;
+mod solver;
+mod state;
+mod step;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
+    module.add("__version__", env!("CARGO_PKG_VERSION"))?;
+    module.add_class::<solver::Solver>()?;
+    module.add_class::<state::State>()?;
+    module.add_class::<hook::Substep>()?;
+    module.add_class::<group::Projection>()?;
+    module.add_class::<recording::Recorder>()?;
+    module.add_class::<log::LogReader>()?;
+    module.add_class::<pool::Pool>()?;
+    module.add_function(wrap_pyfunction!(scene::parse_scene, module)?)?;
+    module.add_function(wrap_pyfunction!(scene::load_scene, module)?)?;
+    module.add_function(wrap_pyfunction!(scene::check_scene, module)?)?;
+    module.add_function(wrap_pyfunction!(scene::scene_to_toml, module)?)?;
+    module.add_function(wrap_pyfunction!(scene::scene_schema, module)?)?;
+    module.add_function(wrap_pyfunction!(scene::default_scene, module)?)?;
+    module.add_function(wrap_pyfunction!(scene::estimate_scene, module)?)?;
+    module.add_function(wrap_pyfunction!(command::run_command, module)?)?;
+    Ok(())
+}

@@ -1,0 +1,344 @@
+//! The simulation: what Python steps, looks at and edits.
+
+use std::path::Path;
+use std::sync::{Mutex, MutexGuard, TryLockError};
+
+use numpy::{PyArray1, PyArray2, PyArray3};
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use unipbd_cli::simulation::{Simulation, stage_names};
+use unipbd_cli::snapshot::Setting;
+use unipbd_core::observe::{Event, Severity};
+use unipbd_core::scene::Scene;
+use unipbd_core::{BuildOptions, Phase};
+
+use crate::edit::{Addition, Values};
+use crate::group::{Failure, PythonGroup};
+use crate::picture::Look;
+use crate::state::State;
+use crate::{arrays, body, diagnostics, edit, errors, order, picture, scene};
+
+/// A run and what belongs to it.
+pub struct World {
+    pub running: Simulation,
+    pub scene: Scene,
+    /// Events that no log has yet.
+    pub unrecorded: Vec<Event>,
+    pub has_groups: bool,
+    pub failure: Failure,
+    /// Rows in the order of their ids, until they change.
+    order: Option<Vec<u32>>,
+}
+
+impl World {
+    /// What stays the same over the run.
+    pub fn setting(&self) -> Setting {
+        self.running.setting(&self.scene, Path::new("simulation"))
+    }
+
+    /// The scene as TOML text.
+    pub fn scene_text(&self, py: Python<'_>) -> PyResult<String> {
+        toml::to_string(&self.scene).map_err(|error| errors::other(py, &error.to_string()))
+    }
+
+    /// Rows in the order of their ids.
+    fn order(&mut self) -> &[u32] {
+        let ids = self.running.solver.ids();
+        self.order.get_or_insert_with(|| order::by_id(ids))
+    }
+}
+
+/// A simulation. One thread at a time uses it.
+#[pyclass(frozen, module = "unipbd._native")]
+pub struct Solver {
+    world: Mutex<World>,
+}
+
+impl Solver {
+    /// The world, unless a step is under way.
+    pub fn lock(&self, py: Python<'_>) -> PyResult<MutexGuard<'_, World>> {
+        match self.world.try_lock() {
+            Ok(world) => Ok(world),
+            // The core keeps its invariants or stops the run: what is left can be looked at.
+            Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
+            Err(TryLockError::WouldBlock) => Err(errors::busy(py)),
+        }
+    }
+}
+
+#[pymethods]
+impl Solver {
+    #[new]
+    fn new(
+        py: Python<'_>,
+        description: &Bound<'_, PyDict>,
+        seed: Option<u64>,
+        threads: Option<usize>,
+        settled: bool,
+    ) -> PyResult<Self> {
+        let scene = scene::from_dict(py, description)?;
+        let mut build = scene.clone();
+        if settled {
+            build.solver.settle_substeps = 0;
+        }
+        let options = BuildOptions { threads, seed };
+        let running = py.detach(|| Simulation::new(&build, options));
+        let running = running.map_err(|problems| errors::other(py, &problems.to_string()))?;
+        let world = World {
+            running,
+            scene,
+            unrecorded: Vec::new(),
+            has_groups: false,
+            failure: Failure::default(),
+            order: None,
+        };
+        Ok(Solver { world: Mutex::new(world) })
+    }
+
+    /// Advances by this many frames.
+    fn step(&self, py: Python<'_>, frames: u64, hooks: Vec<Py<PyAny>>) -> PyResult<()> {
+        let mut world = self.lock(py)?;
+        world.order = None;
+        world.frames(py, frames, &hooks)
+    }
+
+    /// What happened since the last call: (time, severity, message).
+    fn take_events(&self, py: Python<'_>) -> PyResult<Vec<(f64, &'static str, String)>> {
+        let mut world = self.lock(py)?;
+        let events = world.running.solver.take_events();
+        world.unrecorded.extend(events.iter().cloned());
+        let word = |severity| match severity {
+            Severity::Info => "info",
+            Severity::Warning => "warning",
+        };
+        Ok(events.into_iter().map(|event| (event.time, word(event.severity), event.message)).collect())
+    }
+
+    fn add_group(&self, py: Python<'_>, name: String, project: Py<PyAny>) -> PyResult<()> {
+        let mut world = self.lock(py)?;
+        let failure = world.failure.clone();
+        world.running.solver.add_group(Box::new(PythonGroup { name, project, failure }));
+        world.has_groups = true;
+        Ok(())
+    }
+
+    fn apply(
+        &self,
+        py: Python<'_>,
+        changes: Vec<(String, Vec<u32>, Values<'_>)>,
+        removals: Vec<u32>,
+        additions: Vec<Addition<'_>>,
+        bodies: Vec<(u32, [f64; 2], f64)>,
+    ) -> PyResult<(u32, u32)> {
+        let mut world = self.lock(py)?;
+        let edit = edit::edit(py, changes, removals, additions, bodies)?;
+        world.order = None;
+        let solver = &mut world.running.solver;
+        let added = py.detach(|| solver.apply(&edit)).map_err(|error| errors::edit(py, &error))?;
+        Ok((added.start, added.end))
+    }
+
+    fn save(&self, py: Python<'_>) -> PyResult<State> {
+        let world = self.lock(py)?;
+        let solver = &world.running.solver;
+        Ok(State { state: py.detach(|| solver.save()) })
+    }
+
+    fn restore(&self, py: Python<'_>, state: &State) -> PyResult<()> {
+        let mut world = self.lock(py)?;
+        world.order = None;
+        let solver = &mut world.running.solver;
+        py.detach(|| solver.restore(&state.state)).map_err(|error| errors::state(py, &error))
+    }
+
+    fn state_hash(&self, py: Python<'_>) -> PyResult<u64> {
+        let world = self.lock(py)?;
+        let solver = &world.running.solver;
+        Ok(py.detach(|| solver.state_hash()))
+    }
+
+    fn diagnostics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let world = self.lock(py)?;
+        let solver = &world.running.solver;
+        let found = py.detach(|| solver.diagnostics());
+        diagnostics::running(py, &found)
+    }
+
+    /// Wall-clock time by stage since the start [s].
+    fn timings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let dict = PyDict::new(py);
+        for (stage, spent) in self.lock(py)?.running.solver.timings() {
+            dict.set_item(stage, spent.as_secs_f64())?;
+        }
+        Ok(dict)
+    }
+
+    fn stages(&self, py: Python<'_>) -> PyResult<Vec<&'static str>> {
+        Ok(stage_names(&self.lock(py)?.running.solver))
+    }
+
+    fn groups(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        let groups = self.lock(py)?.running.solver.diagnostics().groups;
+        Ok(groups.into_iter().map(|group| group.name).collect())
+    }
+
+    #[getter]
+    fn time(&self, py: Python<'_>) -> PyResult<f64> {
+        Ok(self.lock(py)?.running.solver.time())
+    }
+
+    #[getter]
+    fn frame(&self, py: Python<'_>) -> PyResult<u64> {
+        Ok(self.lock(py)?.running.solver.frame())
+    }
+
+    /// Frames the scene lasts.
+    #[getter]
+    fn frames(&self, py: Python<'_>) -> PyResult<u64> {
+        Ok(self.lock(py)?.running.frames)
+    }
+
+    #[getter]
+    fn substeps_done(&self, py: Python<'_>) -> PyResult<u64> {
+        Ok(self.lock(py)?.running.solver.step())
+    }
+
+    #[getter]
+    fn frame_time(&self, py: Python<'_>) -> PyResult<f64> {
+        Ok(self.lock(py)?.running.solver.frame_time())
+    }
+
+    #[getter]
+    fn spacing(&self, py: Python<'_>) -> PyResult<f64> {
+        Ok(self.lock(py)?.running.solver.spacing())
+    }
+
+    #[getter]
+    fn seed(&self, py: Python<'_>) -> PyResult<u64> {
+        Ok(self.lock(py)?.running.solver.seed())
+    }
+
+    #[getter]
+    fn threads(&self, py: Python<'_>) -> PyResult<usize> {
+        Ok(self.lock(py)?.running.solver.threads())
+    }
+
+    #[getter]
+    fn memory_bytes(&self, py: Python<'_>) -> PyResult<usize> {
+        Ok(self.lock(py)?.running.solver.memory_bytes())
+    }
+
+    /// Number of particles.
+    #[getter]
+    fn count(&self, py: Python<'_>) -> PyResult<usize> {
+        Ok(self.lock(py)?.running.solver.ids().len())
+    }
+
+    /// Particles by the name of their phase.
+    fn counts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let mut by_phase = [0; Phase::ALL.len()];
+        for phase in self.lock(py)?.running.solver.phases() {
+            by_phase[*phase as usize] += 1;
+        }
+        diagnostics::counts(py, by_phase)
+    }
+
+    fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let mut world = self.lock(py)?;
+        world.order();
+        let world = &*world;
+        arrays::vectors(py, world.running.solver.positions(), world.order.as_deref().unwrap_or_default())
+    }
+
+    fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        let mut world = self.lock(py)?;
+        world.order();
+        let world = &*world;
+        arrays::vectors(py, world.running.solver.velocities(), world.order.as_deref().unwrap_or_default())
+    }
+
+    fn ids<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u32>>> {
+        let mut world = self.lock(py)?;
+        let rows = world.order().to_vec();
+        Ok(arrays::gathered(py, world.running.solver.ids(), &rows, |id| id))
+    }
+
+    fn phases<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u8>>> {
+        let mut world = self.lock(py)?;
+        let rows = world.order().to_vec();
+        Ok(arrays::gathered(py, world.running.solver.phases(), &rows, |phase| phase as u8))
+    }
+
+    fn material_indices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u16>>> {
+        let mut world = self.lock(py)?;
+        let rows = world.order().to_vec();
+        Ok(arrays::gathered(py, world.running.solver.material_indices(), &rows, |material| material))
+    }
+
+    fn inverse_masses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let mut world = self.lock(py)?;
+        let rows = world.order().to_vec();
+        Ok(arrays::gathered(py, world.running.solver.particles().inverse_masses(), &rows, arrays::single))
+    }
+
+    fn density_errors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
+        let mut world = self.lock(py)?;
+        let rows = world.order().to_vec();
+        let solver = &world.running.solver;
+        let errors = py.detach(|| solver.density_errors());
+        Ok(arrays::gathered(py, errors, &rows, arrays::single))
+    }
+
+    /// None where the scene has no temperatures.
+    fn temperatures<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f32>>>> {
+        let mut world = self.lock(py)?;
+        let rows = world.order().to_vec();
+        let temperatures = world.running.solver.temperatures();
+        let known = !temperatures.is_empty() || world.scene.gas.first().is_some();
+        Ok(known.then(|| arrays::gathered(py, temperatures, &rows, arrays::single)))
+    }
+
+    /// Name, phase, density and colour of each material, by index.
+    fn materials(&self, py: Python<'_>) -> PyResult<Vec<(String, u8, f64, String)>> {
+        let world = self.lock(py)?;
+        let shown = |material: &unipbd_core::observe::Material| {
+            let [red, green, blue] = material.color;
+            let color = format!("#{red:02x}{green:02x}{blue:02x}");
+            (material.name.clone(), material.phase as u8, material.density, color)
+        };
+        Ok(world.running.solver.materials().iter().map(shown).collect())
+    }
+
+    fn body_names(&self, py: Python<'_>) -> PyResult<Vec<String>> {
+        Ok(self.lock(py)?.running.solver.bodies().iter().map(|body| body.name.clone()).collect())
+    }
+
+    fn body_motion<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyDict>> {
+        let world = self.lock(py)?;
+        let body = world.running.solver.bodies().get(index).ok_or_else(|| errors::other(py, "no such body"))?;
+        body::motion(py, body)
+    }
+
+    fn body_shape<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyDict>> {
+        let world = self.lock(py)?;
+        let body = world.running.solver.bodies().get(index).ok_or_else(|| errors::other(py, "no such body"))?;
+        body::shape(py, body)
+    }
+
+    /// The present frame as the bytes of a PNG file.
+    fn png<'py>(&self, py: Python<'py>, look: Look) -> PyResult<Bound<'py, PyBytes>> {
+        let world = self.lock(py)?;
+        Ok(PyBytes::new(py, &picture::png(py, &world, &look)?))
+    }
+
+    /// The present frame as an array (height, width, 3).
+    fn pixels<'py>(&self, py: Python<'py>, look: Look) -> PyResult<Bound<'py, PyArray3<u8>>> {
+        let world = self.lock(py)?;
+        picture::pixels(py, &world, &look)
+    }
+
+    /// The scene as TOML text.
+    fn scene_text(&self, py: Python<'_>) -> PyResult<String> {
+        self.lock(py)?.scene_text(py)
+    }
+}

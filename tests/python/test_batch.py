@@ -1,0 +1,70 @@
+"""Batches of worlds."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import unipbd as up
+
+
+def test_each_world_is_bit_for_bit_what_it_is_alone(plume: up.Scene) -> None:
+    batch = up.Batch(plume, n=5, seeds=[3, 1, 4, 1, 5], threads=2)
+    batch.step(25)
+    for seed, world in zip([3, 1, 4, 1, 5], batch, strict=True):
+        alone = plume.build(seed=seed)
+        alone.step(25)
+        assert world.state_hash() == alone.state_hash()
+    assert batch[1].state_hash() == batch[3].state_hash() != batch[0].state_hash()
+    assert isinstance(batch.positions, list) or batch.positions.ndim == 3
+
+
+def test_worlds_have_parameters_of_their_own(scene: up.Scene) -> None:
+    def deepen(one: up.Scene, number: int) -> None:
+        one.block[0].max = (1, 0.5 + 0.5 * number)
+
+    batch = up.Batch(scene, n=3, change=deepen)
+    assert batch.counts.tolist() == [50, 100, 150]
+    assert [array.shape for array in batch.positions] == [(50, 2), (100, 2), (150, 2)]
+    batch.step(5)
+    np.testing.assert_allclose(batch.times, 5 / 60)
+    assert [world.seed for world in batch] == [0, 1, 2]
+
+
+def test_worlds_of_one_size_are_stacked(scene: up.Scene) -> None:
+    batch = up.Batch(scene, n=4)
+    assert batch.positions.shape == batch.velocities.shape == (4, 100, 2)
+    assert batch.stack("ids").shape == (4, 100)
+    assert len(batch.state_hashes()) == len(batch) == 4
+    assert "4 worlds" in repr(batch)
+
+
+def test_a_world_that_diverges_is_named_and_stops_no_other(scene: up.Scene) -> None:
+    def let_fly(one: up.Scene, number: int) -> None:
+        if number == 1:
+            one.tank.clear()
+            one.gravity = (0.0, -1e9)
+
+    batch = up.Batch(scene, n=3, change=let_fly)
+    with pytest.raises(up.SolverError) as caught:
+        batch.step(3)
+    assert caught.value.world == 1
+    assert [batch[0].frame, batch[2].frame] == [3, 3]
+
+
+def test_hooks_work_in_single_worlds(scene: up.Scene) -> None:
+    batch = up.Batch(scene, n=2, seeds=[1, 1])
+    batch[0].on_substep(lambda s: s.add_acceleration((0.0, 9.81)))
+    batch.step(30)
+    assert batch[0].frame == batch[1].frame == 30
+    assert batch[0].positions[:, 1].mean() > batch[1].positions[:, 1].mean()
+
+
+def test_numbers_that_do_not_fit_are_refused(scene: up.Scene) -> None:
+    with pytest.raises(ValueError, match="2 seeds for 3"):
+        up.Batch(scene, n=3, seeds=[1, 2])
+    with pytest.raises(ValueError):
+        up.Batch([], n=0)
+    with pytest.raises(ValueError):
+        up.Batch(scene, n=2).step(-1)
+    assert len(up.Batch([scene, scene])) == 2

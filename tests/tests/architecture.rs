@@ -1,0 +1,214 @@
+//! Imports of the core point down only.
+
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+
+use unipbd_tests::repository;
+
+/// The modules of the core in layers, the lowest first. A module may import from its own layer and
+/// from those below it.
+const LAYERS: [&[&str]; 12] = [
+    &["math"],
+    &["phase", "rng", "parallel"],
+    &["particles", "rows", "bodies", "shapes"],
+    &["observe", "scene"],
+    &["neighbors", "simd"],
+    &["kernel"],
+    &["walls"],
+    &["constraints"],
+    &["effects", "sources", "rigid"],
+    &["step"],
+    &["build", "state", "edit"],
+    &["lib"],
+];
+
+/// Modules of one layer that may import each other; all others of a layer do not.
+const MUTUAL: [(&str, &str); 4] =
+    [("bodies", "shapes"), ("shapes", "bodies"), ("neighbors", "simd"), ("simd", "neighbors")];
+
+/// Imports within a layer, one way.
+const SIDEWAYS: [(&str, &str); 1] = [("build", "edit")];
+
+/// Kinds of constraint: a file or folder each, and none names another.
+const CONSTRAINTS: [&str; 3] = ["batch", "contact", "density"];
+
+fn core() -> PathBuf {
+    repository().join("crates/unipbd-core/src")
+}
+
+/// All Rust files under a folder, sorted.
+fn files(folder: &Path) -> Vec<PathBuf> {
+    let mut found = Vec::new();
+    let mut open = vec![folder.to_owned()];
+    while let Some(folder) = open.pop() {
+        for entry in std::fs::read_dir(&folder).expect("the folder can be read") {
+            let path = entry.expect("the entry can be read").path();
+            if path.is_dir() {
+                open.push(path);
+            } else if path.extension().is_some_and(|extension| extension == "rs") {
+                found.push(path);
+            }
+        }
+    }
+    found.sort();
+    found
+}
+
+/// The code of a file: without comments, and without the unit tests at its end.
+fn code(path: &Path) -> String {
+    let text = std::fs::read_to_string(path).expect("the file is text");
+    let text = text.split("\n#[cfg(test)]\nmod tests").next().unwrap_or_default();
+    let without_comment = |line: &str| line.split("//").next().unwrap_or_default().to_owned();
+    text.lines().map(without_comment).collect::<Vec<_>>().join("\n")
+}
+
+/// The top module a file belongs to.
+fn module(path: &Path) -> String {
+    let inside = path.strip_prefix(core()).expect("the file is in the core");
+    let first = inside.iter().next().expect("the path has a part").to_string_lossy();
+    first.trim_end_matches(".rs").to_owned()
+}
+
+/// The top modules named after `crate::`, be it one or a list in braces.
+fn imports(code: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    for (start, _) in code.match_indices("crate::") {
+        let before = code[..start].chars().next_back();
+        if before.is_some_and(|c| c.is_alphanumeric() || c == '_' || c == '$') {
+            continue;
+        }
+        let rest = &code[start + "crate::".len()..];
+        match rest.strip_prefix('{') {
+            Some(list) => found.extend(first_names(list)),
+            None => found.extend(name(rest)),
+        }
+    }
+    found
+}
+
+/// The first name of each entry of a list in braces, whose opening brace has been read.
+fn first_names(list: &str) -> Vec<String> {
+    let (mut names, mut depth, mut fresh) = (Vec::new(), 0, true);
+    for (at, c) in list.char_indices() {
+        match c {
+            '{' => depth += 1,
+            '}' if depth == 0 => break,
+            '}' => depth -= 1,
+            ',' if depth == 0 => fresh = true,
+            c if fresh && !c.is_whitespace() => {
+                names.extend(name(&list[at..]));
+                fresh = false;
+            }
+            _ => {}
+        }
+    }
+    names
+}
+
+fn name(text: &str) -> Option<String> {
+    let name: String = text.chars().take_while(|c| c.is_alphanumeric() || *c == '_').collect();
+    (!name.is_empty()).then_some(name)
+}
+
+#[test]
+fn the_reader_of_imports_finds_lists_and_paths() {
+    let text =
+        "use crate::math::Real;\nuse crate::{phase::{A, B}, rows};\nlet x = crate::scene::X; $crate::no; mycrate::no;";
+    assert_eq!(imports(text), ["math", "phase", "rows", "scene"]);
+}
+
+#[test]
+fn imports_of_the_core_point_down() {
+    let layer_of: BTreeMap<&str, usize> = LAYERS
+        .iter()
+        .enumerate()
+        .flat_map(|(layer, modules)| modules.iter().map(move |module| (*module, layer)))
+        .collect();
+    let mut wrong = Vec::new();
+    let mut seen = 0;
+    for path in files(&core()) {
+        let module = module(&path);
+        let Some(&layer) = layer_of.get(module.as_str()) else {
+            wrong.push(format!("{}: the module {module} is in no layer", path.display()));
+            continue;
+        };
+        for import in imports(&code(&path)) {
+            seen += 1;
+            let allowed = match layer_of.get(import.as_str()) {
+                _ if import == module => true,
+                Some(&below) if below < layer => true,
+                Some(_) => {
+                    let pair = (module.as_str(), import.as_str());
+                    MUTUAL.contains(&pair) || SIDEWAYS.contains(&pair)
+                }
+                None => false,
+            };
+            if !allowed {
+                wrong.push(format!("{}: imports {import}", path.display()));
+            }
+        }
+    }
+    assert!(seen > 100, "only {seen} imports were found");
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn the_step_names_no_concrete_constraint() {
+    for path in files(&core().join("step")) {
+        let code = code(&path);
+        for word in ["Density,", "Density:", "Density>", "DensitySettings", "Batch", "constraints::contact"] {
+            assert!(!code.contains(word), "{} names {word}", path.display());
+        }
+    }
+}
+
+#[test]
+fn only_the_builder_makes_density_groups_and_effects() {
+    let makers = ["Density::new", "Drag::new", "Viscosity::new", "Conduction::new", "VorticityConfinement::new"];
+    for path in files(&core()) {
+        let code = code(&path);
+        for maker in makers.into_iter().filter(|maker| code.contains(maker)) {
+            assert_eq!(module(&path), "build", "{} calls {maker}", path.display());
+        }
+    }
+}
+
+#[test]
+fn kinds_of_constraint_do_not_name_each_other() {
+    let folder = core().join("constraints");
+    for path in files(&folder) {
+        let inside = path.strip_prefix(&folder).expect("the file is in the folder");
+        let own = inside.iter().next().expect("a part").to_string_lossy().trim_end_matches(".rs").to_owned();
+        if !CONSTRAINTS.contains(&own.as_str()) {
+            continue;
+        }
+        let code = code(&path);
+        for other in CONSTRAINTS.into_iter().filter(|other| *other != own) {
+            for name in [format!("constraints::{other}"), format!("super::{other}::")] {
+                assert!(!code.contains(&name), "{} names {name}", path.display());
+            }
+        }
+    }
+}
+
+#[test]
+fn the_core_reads_no_file_and_prints_nothing() {
+    let forbidden = ["std::fs", "std::io", "println!", "eprintln!", "print!(", "dbg!(", "std::env"];
+    for path in files(&core()) {
+        let code = code(&path);
+        for word in forbidden {
+            assert!(!code.contains(word), "{} has {word}", path.display());
+        }
+    }
+}
+
+#[test]
+fn the_tables_name_modules_that_exist() {
+    let exists = |name: &str| core().join(format!("{name}.rs")).exists() || core().join(name).is_dir();
+    for module in LAYERS.into_iter().flatten().filter(|module| **module != "edit") {
+        assert!(exists(module), "there is no module {module}");
+    }
+    for kind in CONSTRAINTS {
+        assert!(exists(&format!("constraints/{kind}")), "there is no constraint {kind}");
+    }
+}

@@ -1,0 +1,115 @@
+//! Water in tanks: dx = 0.1 m, g = 9.81 m/s^2, 60 frames/s.
+
+use unipbd_core::Solver;
+use unipbd_core::scene::{Scene, Substeps};
+use unipbd_tests::{Spread, bars, build, full_size, run, scene, shipped};
+
+fn energy(solver: &Solver) -> f64 {
+    let diagnostics = solver.diagnostics();
+    diagnostics.kinetic_energy + diagnostics.potential_energy
+}
+
+#[test]
+fn the_shipped_dam_break_stays_incompressible_and_gains_no_energy() {
+    let scene = shipped("dam_break.toml").scene;
+    assert_eq!((scene.spacing, scene.fps, scene.solver.substeps), (0.1, 60.0, Substeps::Fixed(8)));
+    let mut solver = build(&scene, 2);
+    assert_eq!(solver.diagnostics().particles(), 800);
+    let start = energy(&solver);
+    let (mut mean, mut worst, mut gain) = (Spread::default(), Spread::default(), Spread::default());
+    run(&mut solver, 300, |solver| {
+        let diagnostics = solver.diagnostics();
+        mean.add(diagnostics.density_error_mean);
+        worst.add(diagnostics.density_error_max);
+        gain.add(energy(solver) / start - 1.0);
+    });
+    bars("dam break 20 x 40, n = 8", |bars| {
+        bars.at_most("mean of max(C, 0)", mean.mean(), 0.003);
+        bars.at_most("worst C", worst.max(), 0.06);
+        bars.at_most("largest energy gain", gain.max(), 0.005);
+        bars.at_least("energy still lost at the end", 1.0 - energy(&solver) / start, 0.3);
+    });
+}
+
+/// A column of water at rest between two walls, as wide as it takes to be called a column.
+fn column(depth: u32, width: u32) -> Scene {
+    let (depth, width) = (f64::from(depth) * 0.1, f64::from(width) * 0.1);
+    scene(&format!(
+        r#"
+        spacing = 0.1
+        [[liquid]]
+        name = "water"
+        [[block]]
+        material = "water"
+        min = [0.0, 0.0]
+        max = [{width}, {depth}]
+        [[tank]]
+        min = [0.0, 0.0]
+        max = [{width}, {top}]
+        open = ["top"]
+        "#,
+        top = 2.0 * depth
+    ))
+}
+
+struct Rest {
+    compression: f64,
+    height: f64,
+    speed: f64,
+    substeps: u32,
+}
+
+/// Runs a column for some seconds and measures its last second.
+fn settle(scene: &Scene, seconds: u64) -> Rest {
+    let mut solver = build(scene, 2);
+    run(&mut solver, 60 * (seconds - 1), |_| ());
+    let (mut compression, mut height, mut square) = (Spread::default(), Spread::default(), Spread::default());
+    let mut substeps = 0;
+    run(&mut solver, 60, |solver| {
+        let diagnostics = solver.diagnostics();
+        let mass = 1000.0 * 0.01 * diagnostics.particles() as f64;
+        compression.add(diagnostics.density_error_max);
+        height.add(2.0 * diagnostics.potential_energy / (mass * 9.81));
+        square.add(2.0 * diagnostics.kinetic_energy / mass);
+        substeps = diagnostics.substeps;
+    });
+    Rest { compression: compression.max(), height: height.mean(), speed: square.mean().sqrt(), substeps }
+}
+
+#[test]
+fn a_column_thirty_deep_stands_still_at_its_height() {
+    let mut scene = column(30, 20);
+    scene.solver.substeps = Substeps::Fixed(8);
+    let rest = settle(&scene, 10);
+    bars("column 30 deep, n = 8, 10 s", |bars| {
+        bars.at_most("C_max over the last second", rest.compression, 0.013);
+        bars.within("height over its start", rest.height / 3.0, 1.0 - 0.012, 1.0 + 0.012);
+        bars.at_most("v_rms over the last second [dx/s]", rest.speed / 0.1, 0.8);
+    });
+}
+
+#[test]
+fn automatic_substeps_hold_the_compression_at_any_depth() {
+    for (depth, full) in [(10, false), (30, false), (100, true), (300, true)] {
+        if full && !full_size(&format!("column {depth} deep with automatic substeps")) {
+            continue;
+        }
+        let rest = settle(&column(depth, 20), 10);
+        bars("column with automatic substeps, 10 s", |bars| {
+            let name = |what: &str| format!("{depth} deep, n = {}: {what}", rest.substeps);
+            bars.at_most(&name("C_max"), rest.compression, 0.013);
+            bars.within(&name("height"), rest.height / (0.1 * f64::from(depth)), 1.0 - 0.012, 1.0 + 0.012);
+        });
+    }
+}
+
+#[test]
+fn twice_the_substeps_cut_the_compression_to_a_third() {
+    let compression = |substeps: u32| {
+        let mut scene = column(30, 20);
+        scene.solver.substeps = Substeps::Fixed(substeps);
+        settle(&scene, 10).compression
+    };
+    let (few, many) = (compression(8), compression(16));
+    bars("column 30 deep, n = 8 and 16", |bars| bars.at_least("ratio of C_max", few / many, 3.0));
+}

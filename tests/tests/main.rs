@@ -1,0 +1,12 @@
+//! What the solver must show, in one binary.
+
+mod architecture;
+mod conservation;
+mod determinism;
+mod emitters;
+mod filled_gas;
+mod liquids;
+mod plume;
+mod smoke;
+mod stages;
+mod walls;
