@@ -18,7 +18,7 @@ const LAYERS: [&[&str]; 12] = [
     &["constraints"],
     &["effects", "sources", "rigid"],
     &["step"],
-    &["build", "state", "edit"],
+    &["build", "state", "edit", "expect"],
     &["lib"],
 ];
 

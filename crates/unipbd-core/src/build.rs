@@ -4,8 +4,6 @@ mod bodies;
 mod carve;
 mod waves;
 
-pub(crate) use bodies::{body_copies, body_names, shape as body_shape};
-
 use crate::constraints::{ConstraintGroup, Density, DensitySettings};
 use crate::effects::{Cohesion, Conduction, Drag, Effect, Heating, QuadraticDrag, SmokeAdvection, Viscosity, VorticityConfinement};
 use crate::math::{Vector, Vector64, real, vector};

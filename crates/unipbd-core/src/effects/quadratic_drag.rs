@@ -16,7 +16,7 @@ impl QuadraticDrag {
         let of = |material: MaterialRef<'_>| match material {
             MaterialRef::Liquid(liquid) => real(liquid.quadratic_drag),
             MaterialRef::Gas(gas) => real(gas.quadratic_drag),
-            MaterialRef::Smoke(_) | MaterialRef::Rigid => 0.0,
+            _ => 0.0,
         };
         let coefficient: Vec<Real> = scene.materials().map(of).collect();
         any(&coefficient)
