@@ -4,11 +4,10 @@ mod bodies;
 mod carve;
 mod waves;
 
-pub(crate) use bodies::{body_copies, body_names, shape as body_shape};
-
 use crate::constraints::{ConstraintGroup, Density, DensitySettings};
 use crate::effects::{
-    Conduction, Drag, Effect, Heating, ShearViscosity, SmokeAdvection, Viscosity, VorticityConfinement,
+    Cohesion, Conduction, Drag, Effect, Heating, QuadraticDrag, ShearViscosity, SmokeAdvection, Viscosity,
+    VorticityConfinement,
 };
 use crate::math::{Vector, Vector64, real, vector};
 use crate::neighbors::{Cover, Neighbors, Periodic, PeriodicAxis};
@@ -119,6 +118,12 @@ fn effects(scene: &Scene, seed: u64) -> Vec<Box<dyn Effect>> {
     }
     if let Some(drag) = Drag::new(scene, Rng::new(seed, WIND_STREAM).state()) {
         effects.push(Box::new(drag));
+    }
+    if let Some(drag) = QuadraticDrag::new(scene, Rng::new(seed, WIND_STREAM).state()) {
+        effects.push(Box::new(drag));
+    }
+    if let Some(cohesion) = Cohesion::new(scene) {
+        effects.push(Box::new(cohesion));
     }
     if let Some(conduction) = Conduction::new(scene) {
         effects.push(Box::new(conduction));

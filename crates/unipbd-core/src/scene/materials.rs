@@ -17,6 +17,10 @@ pub struct Liquid {
     pub kinematic_viscosity: f64,
     /// Whether it has a free surface, or fills its domain and resists dilation too.
     pub surface: LiquidSurface,
+    /// Strength of surface tension, the pull of a particle on its neighbour [m/s^2].
+    pub cohesion: f64,
+    /// Drag against the air that grows with the square of the speed [1/m].
+    pub quadratic_drag: f64,
     /// Factor on gravity.
     pub gravity_factor: f64,
     /// Colour in pictures and logs, `"#rrggbb"`.
@@ -32,6 +36,8 @@ impl Default for Liquid {
             viscosity: 0.0,
             kinematic_viscosity: 0.0,
             surface: LiquidSurface::Free,
+            cohesion: 0.0,
+            quadratic_drag: 0.0,
             gravity_factor: 1.0,
             color: None,
         }
@@ -63,6 +69,8 @@ pub struct Gas {
     pub gravity_factor: f64,
     /// Drag rate k towards the environment velocity where the gas is thin [1/s].
     pub drag: f64,
+    /// Drag that grows with the square of the speed [1/m].
+    pub quadratic_drag: f64,
     /// Strength of vorticity confinement, dimensionless (0 is off; above 5 it adds energy).
     pub vorticity: f64,
     /// Diffusivity of temperature [m^2/s].
@@ -91,6 +99,7 @@ impl Default for Gas {
             density: 1.2,
             gravity_factor: -0.3,
             drag: 0.0,
+            quadratic_drag: 0.0,
             vorticity: 0.0,
             conductivity: 0.0,
             viscosity: 0.0,

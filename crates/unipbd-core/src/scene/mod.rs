@@ -4,6 +4,7 @@
 //! [`Scene::estimate`] says what it would cost, [`Scene::build`] makes a [`Solver`](crate::Solver).
 
 mod bodies;
+mod copies;
 mod description;
 mod estimate;
 mod expect;

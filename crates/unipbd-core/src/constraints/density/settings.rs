@@ -39,6 +39,9 @@ pub struct DensityMaterial {
     pub response_min: Real,
     /// Added to the denominator: constraint force mixing [1/(kg m^2)].
     pub mixing: Real,
+    /// The same for particles moved by a script, whose own response is missing from the denominator: what
+    /// they barely touch must not be thrown [1/(kg m^2)].
+    pub scripted_response_min: Real,
     /// Repulsion strength; the product of two, times an inverse mass, is the part of its overlap that
     /// a pair gives back per substep [kg^1/2].
     pub repulsion: Real,
@@ -55,6 +58,8 @@ pub struct Repulsion {
 const GAS_GATE: f64 = -0.3;
 /// The denominator of a gas particle is at least this part of its value at rest.
 const GAS_RESPONSE_FLOOR: f64 = 0.5;
+/// That of a particle moved by a script, of any fluid, is at least this part of its value at rest.
+const SCRIPTED_RESPONSE_FLOOR: f64 = 0.5;
 /// Gas particles nearer than this many spacings repel each other...
 const REPULSION_REACH: f64 = 0.8;
 /// ...by this part of their overlap per substep.
@@ -103,6 +108,7 @@ impl DensityMaterial {
                 multiplier_min: Real::NEG_INFINITY,
                 gate: Real::NEG_INFINITY,
                 response_min: real(GAS_RESPONSE_FLOOR * rest_response / mass),
+                scripted_response_min: real(SCRIPTED_RESPONSE_FLOOR * rest_response / mass),
                 mixing,
                 repulsion: real((GAS_REPULSION * lightest).sqrt()),
             },
@@ -112,6 +118,7 @@ impl DensityMaterial {
                 multiplier_min: 0.0,
                 gate: Real::NEG_INFINITY,
                 response_min: real(1e-6 * rest_response / mass),
+                scripted_response_min: real(SCRIPTED_RESPONSE_FLOOR * rest_response / mass),
                 repulsion: 0.0,
             },
             Phase::Gas => DensityMaterial {
@@ -120,6 +127,7 @@ impl DensityMaterial {
                 multiplier_min: Real::NEG_INFINITY,
                 gate: real(GAS_GATE),
                 response_min: real(GAS_RESPONSE_FLOOR * rest_response / mass),
+                scripted_response_min: real(SCRIPTED_RESPONSE_FLOOR * rest_response / mass),
                 repulsion: real((GAS_REPULSION * lightest).sqrt()),
             },
             Phase::Smoke | Phase::Rigid | Phase::Solid => DensityMaterial {
@@ -128,6 +136,7 @@ impl DensityMaterial {
                 multiplier_min: 0.0,
                 gate: Real::NEG_INFINITY,
                 response_min: 1.0,
+                scripted_response_min: 1.0,
                 repulsion: 0.0,
             },
         }

@@ -169,7 +169,8 @@ impl DensityMaterial {
         // A particle moved by a script may push, never pull: its own response is missing from the
         // denominator.
         let least = if inverse_mass == 0.0 { 0.0 } else { self.multiplier_min };
-        let new = (old + self.relaxation * error / (response.max(self.response_min) + self.mixing)).max(least);
+        let floor = if inverse_mass == 0.0 { self.scripted_response_min } else { self.response_min };
+        let new = (old + self.relaxation * error / (response.max(floor) + self.mixing)).max(least);
         // What is squeezed in with no way out must not push harder the shorter the substep is.
         if self.multiplier_min == 0.0 && inverse_mass > 0.0 { new.min(limit / inverse_mass) } else { new }
     }
