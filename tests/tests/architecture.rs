@@ -112,14 +112,18 @@ fn name(text: &str) -> Option<String> {
 
 #[test]
 fn the_reader_of_imports_finds_lists_and_paths() {
-    let text = "use crate::math::Real;\nuse crate::{phase::{A, B}, rows};\nlet x = crate::scene::X; $crate::no; mycrate::no;";
+    let text =
+        "use crate::math::Real;\nuse crate::{phase::{A, B}, rows};\nlet x = crate::scene::X; $crate::no; mycrate::no;";
     assert_eq!(imports(text), ["math", "phase", "rows", "scene"]);
 }
 
 #[test]
 fn imports_of_the_core_point_down() {
-    let layer_of: BTreeMap<&str, usize> =
-        LAYERS.iter().enumerate().flat_map(|(layer, modules)| modules.iter().map(move |module| (*module, layer))).collect();
+    let layer_of: BTreeMap<&str, usize> = LAYERS
+        .iter()
+        .enumerate()
+        .flat_map(|(layer, modules)| modules.iter().map(move |module| (*module, layer)))
+        .collect();
     let mut wrong = Vec::new();
     let mut seen = 0;
     for path in files(&core()) {

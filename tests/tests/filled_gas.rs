@@ -182,7 +182,8 @@ fn fronts(solver: &Solver) -> [f64; 2] {
     let place = |hot: bool| {
         let rows = of_phase(solver, Phase::Gas).filter(|&row| (solver.temperatures()[row] > 0.5) == hot);
         let side = if hot { 1.0 } else { -1.0 };
-        let near = rows.filter(|&row| if hot { solver.positions()[row].y > 30.0 } else { solver.positions()[row].y < 10.0 });
+        let near =
+            rows.filter(|&row| if hot { solver.positions()[row].y > 30.0 } else { solver.positions()[row].y < 10.0 });
         let mut way: Vec<f64> = near.map(|row| side * f64::from(solver.positions()[row].x)).collect();
         way.sort_by(f64::total_cmp);
         // The outermost few may be strays.

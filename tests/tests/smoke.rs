@@ -100,9 +100,7 @@ fn smoke_in_a_uniform_stream_comes_round_with_it() {
 fn smoke_in_a_vortex_stays_on_its_circle() {
     let place = Vector64::new(12.0, 0.0);
     let scene = marked_gas("", place, place.perp() * TAU);
-    let exact = |from: Vector64, time: f64| {
-        (Vector64::from_angle(TAU * time).rotate(from), TAU * time * from.length())
-    };
+    let exact = |from: Vector64, time: f64| (Vector64::from_angle(TAU * time).rotate(from), TAU * time * from.length());
     let error = error_after(&scene, 1.0, |x| x.perp() * TAU, exact, |difference| difference);
     bars("smoke in solid rotation", |bars| bars.at_most("error over path after one turn", error, 0.01));
 }

@@ -50,16 +50,7 @@ fn bodies_alone_need_no_neighbours_and_no_density() {
 
 #[test]
 fn bodies_in_water_are_solved_before_and_after_the_fluid() {
-    let all = [
-        Predict,
-        Contacts,
-        FindNeighbors,
-        BeginGroups,
-        Project,
-        ContactsAgain,
-        UpdateVelocities,
-        MoveBodies,
-    ];
+    let all = [Predict, Contacts, FindNeighbors, BeginGroups, Project, ContactsAgain, UpdateVelocities, MoveBodies];
     assert_stages(&format!("{WATER}{BALL}"), &all);
 }
 

@@ -5,7 +5,7 @@ use unipbd_core::neighbors::{Grid, NeighborList, Periodic, PeriodicAxis};
 use unipbd_core::parallel::Parallelism;
 use unipbd_core::simd::{
     CubicSpline, DensityInput, DensityOutput, Level, Mixed, Pairs, Poly6, Shape, Spiky, Weights, WendlandC2,
-    correction, density, difference_gradient, laplacian, repulsion, vorticity, xsph,
+    correction, density, difference_gradient, laplacian, repulsion, vorticity, xsph, xsph_mixed,
 };
 use unipbd_core::{Real, Vector};
 
@@ -94,6 +94,9 @@ fn all_passes(set: &Set, kernel: WendlandC2, level: Level, parallelism: Parallel
     }
     correction(pairs, kernel, &set.x, &set.field, &mut g);
     results.push(("correction", flat(&g)));
+    let traits: Vec<_> = (0..rows).map(|row| Vector::new(set.weights[row].abs(), (row % 3) as Real)).collect();
+    xsph_mixed(pairs, kernel, &set.x, &set.v, &traits, &mut g);
+    results.push(("xsph mixed", flat(&g)));
     vorticity(pairs, kernel, &set.x, &set.v, &mut a);
     results.push(("vorticity", a.clone()));
     difference_gradient(pairs, kernel, &set.x, &set.field, &mut g);
@@ -252,6 +255,25 @@ fn passes_compute_their_formulas() {
             }
         }
     }
+}
+
+#[test]
+fn mixed_viscosity_keeps_momentum_and_drags_nothing_moved_by_a_script() {
+    let set = Set::random(300, Periodic::NONE);
+    let traits: Vec<_> =
+        (0..300).map(|row| Vector::new(0.5 + set.weights[row].abs(), 0.5 + set.field[row].abs())).collect();
+    let mut change = vec![Vector::ZERO; 300];
+    let pairs = set.pairs(Level::best(), Parallelism::Serial);
+    xsph_mixed(pairs, kernel(), &set.x, &set.v, &traits, &mut change);
+    let momentum: Vector = (0..300).map(|row| change[row] / traits[row].y).sum();
+    let size: Real = (0..300).map(|row| change[row].length() / traits[row].y).sum();
+    assert!(momentum.length() < 1e-5 * size, "{momentum} of {size}");
+
+    let scripted: Vec<_> =
+        traits.iter().enumerate().map(|(row, t)| Vector::new(t.x, if row % 5 == 0 { 0.0 } else { t.y })).collect();
+    xsph_mixed(pairs, kernel(), &set.x, &set.v, &scripted, &mut change);
+    assert!(change.iter().step_by(5).all(|change| *change == Vector::ZERO));
+    assert!(change.iter().all(|change| change.is_finite()) && change[1] != Vector::ZERO);
 }
 
 #[test]

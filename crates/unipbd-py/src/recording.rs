@@ -21,8 +21,9 @@ impl Recorder {
     /// Starts a log of this simulation; a file that is there is replaced.
     #[new]
     fn new(py: Python<'_>, path: PathBuf, simulation: &Solver, fps: f64, fields: &str) -> PyResult<Self> {
-        let fields: Fields =
-            fields.parse().map_err(|error: unipbd_cli::record::UnknownField| PyValueError::new_err(error.to_string()))?;
+        let fields: Fields = fields
+            .parse()
+            .map_err(|error: unipbd_cli::record::UnknownField| PyValueError::new_err(error.to_string()))?;
         let header = {
             let world = simulation.lock(py)?;
             Header {

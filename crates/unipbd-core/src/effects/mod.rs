@@ -11,7 +11,7 @@ mod wind;
 pub use conduction::Conduction;
 pub use confinement::VorticityConfinement;
 pub use drag::Drag;
-pub use smoke::SmokeAdvection;
+pub use smoke::{Advected, SmokeAdvection};
 pub use viscosity::Viscosity;
 pub use wind::Wind;
 

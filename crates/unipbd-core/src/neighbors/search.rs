@@ -5,6 +5,7 @@ use crate::bytes::{Damage, Reader, Writer};
 use crate::math::{Real, Vector};
 use crate::parallel::Parallelism;
 use crate::particles::{Particles, Scratch};
+use std::ops::Range;
 
 /// Cost of a list build over that of the passes of one substep (measured, order of magnitude): decides
 /// for how many substeps a list should last.
@@ -103,6 +104,13 @@ impl Neighbors {
     #[inline]
     pub fn for_each(&self, row: usize, visit: impl FnMut(usize)) {
         self.list.list().for_each(row, visit);
+    }
+
+    /// Visits runs of dense rows that hold every one within `radius` of a point, and some more; no row
+    /// twice.
+    #[inline]
+    pub fn for_each_run_near(&self, point: Vector, radius: Real, visit: impl FnMut(Range<usize>)) {
+        self.list.for_each_run_near(&self.grid, &self.motion, point, radius, visit);
     }
 
     /// Visits every dense row within `radius` of any point, and some more.

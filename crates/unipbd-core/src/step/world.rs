@@ -96,6 +96,8 @@ pub(crate) struct World {
     pub(super) measured: OnceLock<Vec<Real>>,
     pub(super) corrections: Corrections,
     pub(super) changes: Changes,
+    /// Room for the velocities that groups change.
+    pub(super) velocities: Vec<Vector>,
     removed: Vec<u32>,
     pub(super) needs_rows: bool,
 }
@@ -112,6 +114,7 @@ impl World {
             measured: OnceLock::new(),
             corrections: Corrections::default(),
             changes: Changes::default(),
+            velocities: Vec::new(),
             removed: Vec::new(),
             needs_rows: false,
         };
