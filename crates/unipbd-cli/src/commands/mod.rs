@@ -1,5 +1,6 @@
 //! The commands, one file each.
 
+mod bench;
 mod check;
 mod estimate;
 mod info;
@@ -20,6 +21,7 @@ pub fn execute(command: &Command, console: Console) -> Result<Exit, Failure> {
         Command::Check(arguments) => check::check(arguments, console),
         Command::Info(arguments) => info::info(arguments, console),
         Command::Render(arguments) => render::render(arguments, console),
+        Command::Bench(arguments) => bench::bench(arguments, console),
         Command::Schema => schema::schema(console),
     }
 }

@@ -92,7 +92,10 @@ impl<S: Space> Work for Chunk<'_, S> {
             let point = smoke.moved(now, particles.position[row], velocity, particles.displacement[row]);
             let at = At { space, kernel, point, positions, vectors };
             let mut sums = Weighed::default();
-            now.neighbors.for_each_run_near(point, smoke.kernel.radius(), |run| near.weigh(&at, run, &mut sums));
+            // No closure here: it would miss the instruction set.
+            for run in now.neighbors.runs_near(point).iter() {
+                near.weigh(&at, run, &mut sums);
+            }
             let weight = sums.weight();
             let carried = if weight > 0.0 { sums.vector() / weight } else { velocity };
             *out = Advected { position: point, velocity: carried };

@@ -78,7 +78,8 @@ impl Weighed {
         let rows = at.positions.len();
         assert!(rows == at.vectors.len() && run.start <= run.end && run.end <= rows);
         let mut row = run.start;
-        // SAFETY: the caller vouches for AVX2; eight vectors from `row` are within both slices.
+        // SAFETY: the caller vouches for AVX2; eight vectors from `row` are within both
+        // slices, and eight counts from at most the eighth are within `COUNTED`.
         unsafe {
             let (center_x, center_y) = (Avx2::splat(at.point.x), Avx2::splat(at.point.y));
             let (mut weights, mut xs, mut ys) = (Avx2::load(&self.weight), Avx2::load(&self.x), Avx2::load(&self.y));
@@ -87,7 +88,7 @@ impl Weighed {
                 let (u, v) = Avx2::deinterleaved(at.vectors.as_ptr().add(row));
                 let (x, y) = at.space.shortest(center_x - other_x, center_y - other_y);
                 let left = LANES.min(run.end - row);
-                let counted = Avx2::counts(&std::array::from_fn(|lane| COUNTED[LANES - left + lane]));
+                let counted = Avx2::counts(&*COUNTED.as_ptr().add(LANES - left).cast());
                 let weight = at.kernel.at(x * x + y * y).0.where_counted(counted, 0);
                 weights = weights + weight;
                 xs = xs + weight * u;
@@ -118,7 +119,9 @@ mod tests {
     impl Work for Sum<'_> {
         #[inline(always)]
         fn run<N: Near>(self, near: N) {
-            self.runs.iter().for_each(|run| near.weigh(&self.at, run.clone(), self.sums));
+            for run in self.runs {
+                near.weigh(&self.at, run.clone(), self.sums);
+            }
         }
     }
 
