@@ -3,6 +3,7 @@
 mod bench;
 mod check;
 mod estimate;
+mod expect;
 mod info;
 mod recording;
 mod render;
@@ -19,6 +20,7 @@ pub fn execute(command: &Command, console: Console) -> Result<Exit, Failure> {
     match command {
         Command::Run(arguments) => run::run(arguments, console),
         Command::Check(arguments) => check::check(arguments, console),
+        Command::Expect(arguments) => expect::expect(arguments, console),
         Command::Info(arguments) => info::info(arguments, console),
         Command::Render(arguments) => render::render(arguments, console),
         Command::Bench(arguments) => bench::bench(arguments, console),

@@ -4,6 +4,8 @@
 mod conduction;
 mod confinement;
 mod drag;
+mod heating;
+mod shear_viscosity;
 mod smoke;
 mod viscosity;
 mod wind;
@@ -12,6 +14,8 @@ pub use conduction::Conduction;
 pub use confinement::VorticityConfinement;
 pub use drag::Drag;
 pub use smoke::{Advected, SmokeAdvection};
+pub use heating::Heating;
+pub use shear_viscosity::ShearViscosity;
 pub use viscosity::Viscosity;
 pub use wind::Wind;
 

@@ -28,7 +28,7 @@ pub use passes::{
     DensityInput, DensityOutput, Pairs, Weights, correction, density, difference_gradient, laplacian, repulsion,
     vorticity, xsph, xsph_mixed,
 };
-pub use shapes::{CubicSpline, Mixed, Number, Poly6, Shape, Spiky, WendlandC2};
+pub use shapes::{Alternative, CubicSpline, Mixed, Number, Poly6, Shape, SlopeAsValue, Spiky, Tensile, WendlandC2};
 
 /// An instruction set that passes are compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -1,5 +1,6 @@
 //! Removal: past its lifetime, outside the domain, or gas with no smoke near.
 
+use super::sink::RegionSink;
 use crate::math::{Real, Vector, Vector64, real, vector};
 use crate::neighbors::{Cursor, Grid, Periodic};
 use crate::parallel::Parallelism;
@@ -16,6 +17,8 @@ pub struct RemovalRules {
     /// Positions of the smoke: as they come, and in the order of the grid.
     markers: Vec<Vector>,
     sorted: Vec<Vector>,
+    sinks: Vec<RegionSink>,
+    frame_time: f64,
 }
 
 #[derive(Clone, Copy)]
@@ -57,13 +60,15 @@ impl RemovalRules {
         });
         let keep_radius = materials.iter().filter_map(|rule| rule.keep_radius).fold(0.0, Real::max);
         let any = materials.iter().any(|rule| rule.lifetime.is_finite());
-        (any || region.is_some() || keep_radius > 0.0).then(|| RemovalRules {
+        (any || region.is_some() || keep_radius > 0.0 || !scene.sink.is_empty()).then(|| RemovalRules {
             materials,
             region,
             keep_radius,
             smoke: Grid::new(periodic),
             markers: Vec::new(),
             sorted: Vec::new(),
+            sinks: scene.sink.iter().map(|sink| RegionSink::new(sink, scene)).collect(),
+            frame_time: 1.0 / scene.fps,
         })
     }
 
@@ -72,12 +77,29 @@ impl RemovalRules {
         self.keep_radius > 0.0 || self.materials.iter().any(|rule| rule.lifetime.is_finite())
     }
 
-    /// Collects the rows to remove, in ascending order.
-    pub fn find(&mut self, particles: &Particles, parallelism: Parallelism, rows: &mut Vec<u32>) {
+    /// Collects the rows to remove at this time [s], in ascending order.
+    pub fn find(&mut self, particles: &Particles, time: f64, parallelism: Parallelism, rows: &mut Vec<u32>) {
         rows.clear();
         self.sort_smoke(particles, parallelism);
         let gone = |row: usize| self.is_expired(particles, row) || self.is_abandoned(particles, row);
         rows.extend((0..particles.len() as u32).filter(|&row| gone(row as usize)));
+        self.drain(particles, time, rows);
+    }
+
+    /// Adds what sinks take, the particles with the lowest ids first.
+    fn drain(&self, particles: &Particles, time: f64, rows: &mut Vec<u32>) {
+        for sink in &self.sinks {
+            let allowance = sink.allowance(time, self.frame_time);
+            let taken = |row: &u32| {
+                let movable = particles.phase[*row as usize] != Phase::Rigid && !is_scripted(particles, *row as usize);
+                movable && sink.takes(particles, *row as usize) && rows.binary_search(row).is_err()
+            };
+            let mut found: Vec<u32> = (0..particles.len() as u32).filter(taken).collect();
+            found.sort_unstable_by_key(|&row| particles.id[row as usize]);
+            found.truncate(allowance);
+            rows.extend(found);
+            rows.sort_unstable();
+        }
     }
 
     fn is_expired(&self, particles: &Particles, row: usize) -> bool {

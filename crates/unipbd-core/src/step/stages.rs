@@ -4,6 +4,7 @@ use super::integrate;
 use super::world::World;
 use super::{SolverError, Stage};
 use crate::effects::Advected;
+use crate::constraints::ConstraintGroup;
 use crate::math::{Real, wide};
 use crate::neighbors::Prepared;
 use crate::parallel::Parallelism;
@@ -105,6 +106,12 @@ impl World {
                 self.reset_corrections();
                 group.project(World::now(&self.parts, &self.rows, &self.clock), &mut self.corrections);
                 self.take_up_corrections();
+            }
+            self.iterated += 1;
+            // A violation is that of the positions the iteration started from.
+            let within = |group: &dyn ConstraintGroup| group.violation().unwrap_or(0.0) <= self.parts.tolerance;
+            if self.parts.tolerance > 0.0 && groups.iter().all(|group| within(group.as_ref())) {
+                break;
             }
         }
         for columns in groups.iter().filter_map(|group| group.density()) {

@@ -4,7 +4,7 @@ use std::sync::OnceLock;
 
 use super::integrate::BodyForce;
 use super::pipeline::{Features, pipeline};
-use super::substeps::{Demand, SubstepRule};
+use super::substeps::{Choice, Demand, SubstepRule};
 use super::timings::Timings;
 use super::{FrameReport, SolverError, Stage};
 use crate::constraints::{ConstraintGroup, Corrections, Needs, Substep};
@@ -36,6 +36,8 @@ pub(crate) struct Parts {
     pub removal: Option<RemovalRules>,
     pub substeps: SubstepRule,
     pub iterations: u32,
+    /// Violation of every group at which the iteration stops.
+    pub tolerance: f64,
     pub gravity: Vector,
     pub spacing: f64,
     pub frame_time: f64,
@@ -98,6 +100,10 @@ pub(crate) struct World {
     pub(super) changes: Changes,
     /// Room for the velocities that groups change.
     pub(super) velocities: Vec<Vector>,
+    /// Why the last frame took the substeps it took.
+    pub(super) choice: Choice,
+    /// Iterations of the frame so far.
+    pub(super) iterated: u32,
     removed: Vec<u32>,
     pub(super) needs_rows: bool,
 }
@@ -115,6 +121,8 @@ impl World {
             corrections: Corrections::default(),
             changes: Changes::default(),
             velocities: Vec::new(),
+            choice: Choice::default(),
+            iterated: 0,
             removed: Vec::new(),
             needs_rows: false,
         };
@@ -170,6 +178,7 @@ impl World {
         let mut removed = 0;
         if self.clock.done == 0 {
             removed = self.remove();
+            self.iterated = 0;
             self.clock.substeps = self.choose_substeps();
             self.clock.pressure_limit = self.pressure_limit();
             self.clock.dt = self.parts.frame_time / f64::from(self.clock.substeps);
@@ -259,7 +268,7 @@ impl World {
 
     fn remove(&mut self) -> u64 {
         let Some(rules) = &mut self.parts.removal else { return 0 };
-        rules.find(&self.parts.particles, self.parts.parallelism, &mut self.removed);
+        rules.find(&self.parts.particles, self.clock.time, self.parts.parallelism, &mut self.removed);
         if self.removed.is_empty() {
             return 0;
         }
@@ -270,7 +279,7 @@ impl World {
 
     fn choose_substeps(&mut self) -> u32 {
         let demand = self.demand();
-        let choice = self.parts.substeps.choose(self.parts.frame_time, demand);
+        let choice = self.parts.substeps.choose_after(self.clock.substeps, self.parts.frame_time, demand);
         let capped = choice.wanted > choice.substeps;
         if capped && !self.clock.capped {
             let message = format!(
@@ -281,6 +290,7 @@ impl World {
             self.events.push(Event { time: self.clock.time, severity: Severity::Warning, message });
         }
         self.clock.capped = capped;
+        self.choice = choice;
         choice.substeps
     }
 
