@@ -98,6 +98,8 @@ pub(crate) struct World {
     pub(super) measured: OnceLock<Vec<Real>>,
     pub(super) corrections: Corrections,
     pub(super) changes: Changes,
+    /// Room for the velocities that groups change.
+    pub(super) velocities: Vec<Vector>,
     /// Why the last frame took the substeps it took.
     pub(super) choice: Choice,
     /// Iterations of the frame so far.
@@ -118,6 +120,7 @@ impl World {
             measured: OnceLock::new(),
             corrections: Corrections::default(),
             changes: Changes::default(),
+            velocities: Vec::new(),
             choice: Choice::default(),
             iterated: 0,
             removed: Vec::new(),

@@ -2,10 +2,14 @@
 
 use super::{Density, DensityMaterial};
 use crate::constraints::{Corrections, Substep};
-use crate::math::Real;
+use crate::math::{Real, Vector};
 use crate::phase::Phase;
 use crate::scene::GradientPoint;
-use crate::simd::{self, DensityInput, DensityOutput, Tensile, Weights};
+use crate::simd::near::{self, Near, Work};
+use crate::simd::space::{Open, Space, Wrapped};
+use crate::simd::weigh::{At, Weighed};
+use crate::simd::{self, DensityInput, DensityOutput, Level, Shape, Tensile, Weights};
+use crate::walls::Coverage;
 
 impl Density {
     /// Pass 1: sums of the kernel, its gradient and the response of the neighbours.
@@ -34,36 +38,33 @@ impl Density {
     pub(super) fn step_multipliers(&mut self, now: Substep<'_>) {
         let volume = self.settings.volume;
         let own = volume * self.kernel.value(0.0);
-        let (sums, coverage, materials) = (&self.sums, &self.coverage, &self.settings.materials);
         let gradients = self.settings.gradients;
-        let positions = Density::value_positions(gradients, &self.middle, now);
-        let gradient_positions = Density::gradient_positions(gradients, &self.middle, now);
-        let (errors, walls) = (&mut self.error, &mut self.wall_gradient);
-        now.parallelism.chunks2(errors, walls, |first, errors, walls| {
-            for k in 0..errors.len() {
-                let i = first + k;
-                let fluid = volume * sums.value[i] + own - 1.0;
-                if now.walls.is_empty() {
-                    errors[k] = fluid;
-                } else {
-                    errors[k] = fluid + now.walls.coverage(positions[i], coverage).0;
-                    walls[k] = now.walls.coverage(gradient_positions[i], coverage).1;
-                }
-            }
-        });
-        let (errors, walls) = (&self.error, &self.wall_gradient);
-        let inverse_masses = now.particles.inverse_masses();
-        let material_of = now.particles.materials();
+        let behind_walls = BehindWalls {
+            now,
+            coverage: &self.coverage,
+            positions: Density::value_positions(gradients, &self.middle, now),
+            gradient_positions: match gradients {
+                GradientPoint::Start => Some(now.particles.starts()),
+                GradientPoint::Predicted | GradientPoint::Middle => None,
+            },
+        };
         let limit = now.pressure_limit * now.dt * now.dt;
-        now.parallelism.chunks2(&mut self.step, &mut self.multiplier, |first, steps, multipliers| {
-            for k in 0..steps.len() {
+        let (sums, materials) = (&self.sums, &self.settings.materials);
+        let (inverse_mass, material_of) = (now.particles.inverse_masses(), now.particles.materials());
+        let (error, wall, step, multiplier) =
+            (&mut self.error, &mut self.wall_gradient, &mut self.step, &mut self.multiplier);
+        now.parallelism.chunks4(error, wall, step, multiplier, |first, error, wall, step, multiplier| {
+            for k in 0..error.len() {
                 let i = first + k;
-                let gradient = sums.gradient[i] * volume + walls[i];
-                let response = inverse_masses[i] * gradient.length_squared() + volume * volume * sums.response[i];
+                let (part, slope) = behind_walls.at(i);
+                error[k] = volume * sums.value[i] + own - 1.0 + part;
+                wall[k] = slope;
+                let gradient = sums.gradient[i] * volume + slope;
+                let response = inverse_mass[i] * gradient.length_squared() + volume * volume * sums.response[i];
                 let material = &materials[usize::from(material_of[i])];
-                let new = material.multiplier(multipliers[k], errors[i], response, inverse_masses[i], limit);
-                steps[k] = new - multipliers[k];
-                multipliers[k] = new;
+                let new = material.multiplier(multiplier[k], error[k], response, inverse_mass[i], limit);
+                step[k] = new - multiplier[k];
+                multiplier[k] = new;
             }
         });
     }
@@ -141,21 +142,83 @@ impl Density {
     /// made for other positions.
     pub(super) fn measure(&self, now: Substep<'_>) -> Vec<Real> {
         let particles = now.particles;
-        let (positions, periodic) = (particles.positions(), now.neighbors.periodic());
-        let (radius, volume) = (self.kernel.radius(), self.settings.volume);
         let mut errors = vec![0.0; particles.len()];
-        now.parallelism.update(&mut errors[..particles.dense()], |row, error| {
-            if !particles.phases()[row].is_fluid() {
-                return;
-            }
-            let x = positions[row];
-            let mut sum = 0.0;
-            now.neighbors.for_each_near(x, radius, |other| {
-                sum += self.kernel.value(periodic.min_image(x - positions[other]).length());
-            });
-            *error = volume * sum + now.walls.coverage(x, &self.coverage).0 - 1.0;
-        });
+        match self.kernel.alternative() {
+            None => self.measure_with(self.kernel.shape(), now, &mut errors[..particles.dense()]),
+            Some(shape) => self.measure_with(shape, now, &mut errors[..particles.dense()]),
+        }
         errors
+    }
+
+    fn measure_with(&self, shape: impl Shape, now: Substep<'_>, errors: &mut [Real]) {
+        let periodic = now.neighbors.periodic();
+        now.parallelism.chunks(errors, |first, out| {
+            if periodic.any() {
+                let space = Wrapped::new(periodic);
+                near::dispatch(Level::best(), Measured { density: self, shape, now, space, first, out });
+            } else {
+                near::dispatch(Level::best(), Measured { density: self, shape, now, space: Open, first, out });
+            }
+        });
+    }
+}
+
+/// Density errors of the rows from `first` on, measured by one task.
+struct Measured<'a, S, K> {
+    density: &'a Density,
+    shape: K,
+    now: Substep<'a>,
+    space: S,
+    first: usize,
+    out: &'a mut [Real],
+}
+
+impl<S: Space, K: Shape> Work for Measured<'_, S, K> {
+    #[inline(always)]
+    fn run<N: Near>(self, near: N) {
+        let Measured { density, shape, now, space, first, out } = self;
+        let particles = now.particles;
+        let positions = &particles.positions()[..particles.dense()];
+        let scale = density.settings.volume * shape.value_scale();
+        for (row, out) in (first..).zip(out) {
+            if !particles.phases()[row].is_fluid() {
+                continue;
+            }
+            let point = positions[row];
+            // Only the weights are asked for: any column will do for the vectors.
+            let at = At { space, kernel: shape, point, positions, vectors: positions };
+            let mut sums = Weighed::default();
+            // No closure here: it would miss the instruction set.
+            for run in now.neighbors.runs_near(point).iter() {
+                near.weigh(&at, run, &mut sums);
+            }
+            *out = scale * sums.weight() + now.walls.coverage(point, &density.coverage).0 - 1.0;
+        }
+    }
+}
+
+/// The part of the kernel inside walls, row by row.
+struct BehindWalls<'a> {
+    now: Substep<'a>,
+    coverage: &'a Coverage,
+    positions: &'a [Vector],
+    /// Where gradients are taken, if not at `positions`.
+    gradient_positions: Option<&'a [Vector]>,
+}
+
+impl BehindWalls<'_> {
+    /// The part where the density is taken, and its gradient where gradients are taken [1/m].
+    #[inline]
+    fn at(&self, row: usize) -> (Real, Vector) {
+        let walls = self.now.walls;
+        if walls.is_empty() {
+            return (0.0, Vector::ZERO);
+        }
+        let (part, slope) = walls.coverage(self.positions[row], self.coverage);
+        match self.gradient_positions {
+            None => (part, slope),
+            Some(positions) => (part, walls.coverage(positions[row], self.coverage).1),
+        }
     }
 }
 
