@@ -3,17 +3,19 @@
 use std::path::Path;
 use std::process::ExitCode;
 
+use unipbd_core::scene::{GradientPoint, KernelKind, SolverSettings, Substeps};
 use unipbd_validation::report::{Entry, TARGETS, sheet};
-use unipbd_validation::stress::{Ending, NAMED, fuzz};
+use unipbd_validation::stress::{Ending, NAMED, fuzz, random_scene, summary};
 use unipbd_validation::{cases, sweep};
 
 const HELP: &str =
-    "usage: unipbd-validation [--quick | --full | --sweep [--full] | --stress [--full] | CASE [RESOLUTION [TARGET]]]
+    "usage: unipbd-validation [--quick | --full | --sweep [--full] | --stress [--full] | CASE [RESOLUTION] [SETTING=VALUE...]]
   --quick   every case at its quick size (default)
   --full    every case at three resolutions and three targets; writes docs/accuracy.md
   --sweep   run time against error for four cases; writes docs/accuracy/*.csv and *.svg
   --stress  scenes that ask too much, and 100 random ones (2000 with --full)
-  CASE      one case";
+  CASE      one case; settings are target, substeps, iterations, tolerance, kernel, kernel_radius, relaxation,
+            gradients, constraint_mixing, artificial_pressure";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -68,11 +70,49 @@ fn run_one(name: &str, rest: &[String]) -> Result<bool, Box<dyn std::error::Erro
         let names: Vec<&str> = cases::ALL.iter().map(|case| case.name).collect();
         format!("there is no case \"{name}\"; the cases are {}", names.join(", "))
     })?;
-    let resolution = rest.first().map_or(Ok(case.quick), |text| text.parse())?;
-    let target = rest.get(1).map_or(Ok(0.01), |text| text.parse())?;
-    let entry = Entry::run(case, resolution, target);
+    let (mut resolution, mut solver) = (case.quick, SolverSettings::default());
+    for argument in rest {
+        match argument.split_once('=') {
+            None => resolution = argument.parse()?,
+            Some((key, value)) => set(&mut solver, key, value)?,
+        }
+    }
+    let target = solver.target_compression;
+    let entry = Entry { case, resolution, target, result: case.run(resolution, &solver) };
     show(&entry);
     Ok(entry.verdict() == "holds")
+}
+
+/// Sets a key of the solver.
+fn set(solver: &mut SolverSettings, key: &str, value: &str) -> Result<(), Box<dyn std::error::Error>> {
+    match key {
+        "target" => solver.target_compression = value.parse()?,
+        "substeps" => solver.substeps = Substeps::Fixed(value.parse()?),
+        "iterations" => solver.iterations = value.parse()?,
+        "tolerance" => solver.tolerance = value.parse()?,
+        "kernel_radius" => solver.kernel_radius = value.parse()?,
+        "relaxation" => solver.relaxation = Some(value.parse()?),
+        "constraint_mixing" => solver.constraint_mixing = value.parse()?,
+        "artificial_pressure" => solver.artificial_pressure = value.parse()?,
+        "gradients" => {
+            solver.gradients = Some(match value {
+                "start" => GradientPoint::Start,
+                "middle" => GradientPoint::Middle,
+                "predicted" => GradientPoint::Predicted,
+                _ => return Err("gradients are start, middle or predicted".into()),
+            });
+        }
+        "kernel" => {
+            solver.kernel = match value {
+                "wendland_c2" => KernelKind::WendlandC2,
+                "cubic_spline" => KernelKind::CubicSpline,
+                "poly6_spiky" => KernelKind::Poly6Spiky,
+                _ => return Err("kernels are wendland_c2, cubic_spline, poly6_spiky".into()),
+            };
+        }
+        _ => return Err(format!("there is no setting {key}").into()),
+    }
+    Ok(())
 }
 
 fn run_full() -> Result<bool, Box<dyn std::error::Error>> {
@@ -117,7 +157,7 @@ fn run_stress(scenes: u64) -> bool {
     }
     let counts = fuzz(0..scenes, |seed, ending| {
         if let Ending::Broken(what) = ending {
-            println!("seed {seed}: {what}");
+            println!("seed {seed}: {what}\n    {}", summary(&random_scene(seed).0));
         }
     });
     println!(
@@ -127,6 +167,9 @@ fn run_stress(scenes: u64) -> bool {
         counts.stopped.len(),
         counts.broken.len()
     );
-    counts.stopped.iter().for_each(|(seed, error)| println!("seed {seed} stopped: {error}"));
+    counts
+        .stopped
+        .iter()
+        .for_each(|(seed, error)| println!("seed {seed} stopped: {error}\n    {}", summary(&random_scene(*seed).0)));
     good && counts.broken.is_empty()
 }

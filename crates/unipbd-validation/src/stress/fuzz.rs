@@ -64,6 +64,26 @@ pub fn fuzz(seeds: impl Iterator<Item = u64>, mut look: impl FnMut(u64, &Ending)
     counts
 }
 
+/// A scene in a few words.
+pub fn summary(scene: &Scene) -> String {
+    let liquids: Vec<String> = scene
+        .liquid
+        .iter()
+        .map(|l| format!("{:.0} {:?} nu {:.1e}", l.density, l.surface, l.kinematic_viscosity))
+        .collect();
+    let gases: Vec<String> = scene.gas.iter().map(|g| format!("{:.0} x {:.2}", g.density, g.gravity_factor)).collect();
+    let bodies: Vec<String> = scene.body.iter().map(|body| format!("{:.0}", body.density)).collect();
+    let speed = scene.block.iter().map(|b| b.velocity[0].hypot(b.velocity[1])).fold(0.0, f64::max);
+    format!(
+        "dx {:.3}, {} fps, {:?}, liquids {liquids:?}, gases {gases:?}, bodies {bodies:?}, {} emitters, {:.1} dx/frame",
+        scene.spacing,
+        scene.fps,
+        scene.solver.substeps,
+        scene.emitter.len(),
+        speed / (scene.spacing * scene.fps)
+    )
+}
+
 /// A scene and the speed that can be accounted for [m/s].
 pub fn random_scene(seed: u64) -> (Scene, f64) {
     let mut random = Random(seed);

@@ -4,7 +4,7 @@
 mod fuzz;
 mod named;
 
-pub use fuzz::{Counts, fuzz, random_scene};
+pub use fuzz::{Counts, fuzz, random_scene, summary};
 pub use named::{NAMED, Stress};
 
 use unipbd_core::scene::Scene;
