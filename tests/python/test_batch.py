@@ -40,10 +40,12 @@ def test_worlds_of_one_size_are_stacked(scene: up.Scene) -> None:
 
 
 def test_a_world_that_diverges_is_named_and_stops_no_other(scene: up.Scene) -> None:
-    batch = up.Batch(scene, n=3)
-    with batch[1].edit() as e:
-        e.positions[0] = e.positions[1]
-        e.velocities[:] = (5e6, 0)
+    def let_fly(one: up.Scene, number: int) -> None:
+        if number == 1:
+            one.tank.clear()
+            one.gravity = (0.0, -1e9)
+
+    batch = up.Batch(scene, n=3, change=let_fly)
     with pytest.raises(up.SolverError) as caught:
         batch.step(3)
     assert caught.value.world == 1

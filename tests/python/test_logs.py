@@ -28,7 +28,7 @@ def test_a_recorded_run_reads_back_as_it_was(plume: up.Scene, tmp_path: Path) ->
         np.testing.assert_array_equal(frame.positions, positions)
         assert frame.diagnostics is not None and frame.diagnostics["state_hash"] == state_hash
         assert frame.velocities is not None and frame.velocities.shape == positions.shape
-        assert frame.temperatures is not None and len(frame.temperatures) == len(positions)
+        assert len(positions) == 0 or frame.temperatures is not None and len(frame.temperatures) == len(positions)
     assert len(list(log)) == 16, "a log can be read again"
     assert log.diagnostics()["speed_max"].shape == (16,)
 

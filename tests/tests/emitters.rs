@@ -35,7 +35,7 @@ fn all_gas_is_gone_a_second_after_the_last_has_had_its_time() {
     assert!(diagnostics.count(Phase::Smoke) > 0, "smoke without a lifetime stays");
 }
 
-/// A nozzle in a closed box that is full of gas already.
+/// A nozzle between two walls at the bottom of a closed box that is full of gas already.
 const BLOCKED: &str = r#"
 spacing = 0.02
 [[gas]]
@@ -45,16 +45,12 @@ material = "air"
 min = [-0.4, 0.08]
 max = [0.4, 0.8]
 jitter = 0.1
-[[block]]
-material = "air"
+[[obstacle]]
 min = [-0.4, 0.0]
 max = [-0.16, 0.08]
-jitter = 0.1
-[[block]]
-material = "air"
+[[obstacle]]
 min = [0.16, 0.0]
 max = [0.4, 0.08]
-jitter = 0.1
 [[tank]]
 min = [-0.4, 0.0]
 max = [0.4, 0.8]

@@ -16,7 +16,7 @@ pub enum Exit {
     InvalidScene = 3,
     /// The simulation diverged.
     Diverged = 4,
-    /// A `--stop-on` condition was met.
+    /// A `--stop-on` condition was met, or an expectation of a scene does not hold.
     ConditionMet = 5,
     /// Ctrl-C.
     Interrupted = 130,

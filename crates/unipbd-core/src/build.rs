@@ -1,9 +1,15 @@
 //! From a scene to a running solver: the only place that names concrete groups and effects.
 
 mod bodies;
+mod carve;
+mod waves;
+
+pub(crate) use bodies::{body_copies, body_names, shape as body_shape};
 
 use crate::constraints::{ConstraintGroup, Density, DensitySettings};
-use crate::effects::{Conduction, Drag, Effect, ShearViscosity, SmokeAdvection, Viscosity, VorticityConfinement};
+use crate::effects::{
+    Conduction, Drag, Effect, Heating, ShearViscosity, SmokeAdvection, Viscosity, VorticityConfinement,
+};
 use crate::math::{Vector, Vector64, real, vector};
 use crate::neighbors::{Cover, Neighbors, Periodic, PeriodicAxis};
 use crate::observe::Material;
@@ -82,7 +88,7 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         groups: groups(scene, settings),
         effects,
         smoke: (!scene.smoke.is_empty()).then(|| SmokeAdvection::new(scene)),
-        emitters: (!scene.emitter.is_empty()).then(|| EmitterSystem::new(scene, seed)),
+        emitters: (!scene.emitter.is_empty() || !scene.injector.is_empty()).then(|| EmitterSystem::new(scene, seed)),
         removal,
         substeps: SubstepRule::new(scene),
         iterations: scene.solver.iterations,
@@ -116,6 +122,9 @@ fn effects(scene: &Scene, seed: u64) -> Vec<Box<dyn Effect>> {
     }
     if let Some(conduction) = Conduction::new(scene) {
         effects.push(Box::new(conduction));
+    }
+    if let Some(heating) = Heating::new(scene) {
+        effects.push(Box::new(heating));
     }
     if let Some(confinement) = VorticityConfinement::new(scene) {
         effects.push(Box::new(confinement));
@@ -180,10 +189,11 @@ struct Filling<'a> {
 
 fn particles(scene: &Scene, seed: u64, optional: OptionalColumns) -> Particles {
     let mut particles = Particles::new(optional);
+    let solids = bodies::solids(scene);
     for (number, block) in scene.block.iter().enumerate() {
         let filling = Filling {
             material: &block.material,
-            points: block_points(block, scene.spacing),
+            points: carve::outside(block_points(block, scene.spacing), &solids, scene.spacing),
             velocity: block.velocity,
             jitter: block.jitter,
             temperature: block.temperature,
@@ -194,7 +204,7 @@ fn particles(scene: &Scene, seed: u64, optional: OptionalColumns) -> Particles {
     for (number, disc) in scene.disc.iter().enumerate() {
         let filling = Filling {
             material: &disc.material,
-            points: disc_points(disc, scene.spacing),
+            points: carve::outside(disc_points(disc, scene.spacing), &solids, scene.spacing),
             velocity: disc.velocity,
             jitter: disc.jitter,
             temperature: disc.temperature,
@@ -227,10 +237,11 @@ impl Filling<'_> {
         let Some((index, material)) = scene.material(self.material) else { return };
         let mut rng = Rng::new(seed, self.stream);
         let mass = material.density() * scene.spacing * scene.spacing;
+        let waves = waves::Waves::new(scene, seed);
         for &point in &self.points {
             let shift = Vector64::new(rng.signed_unit(), rng.signed_unit()) * (self.jitter * scene.spacing);
             particles.push(NewParticle {
-                position: vector(point + shift),
+                position: vector(waves.displaced(point) + shift),
                 velocity: vector(self.velocity.into()),
                 inverse_mass: real(1.0 / mass),
                 material: index as MaterialIndex,

@@ -19,6 +19,7 @@ mod bytes;
 pub mod constraints;
 pub mod edit;
 pub mod effects;
+mod expect;
 pub mod kernel;
 pub mod math;
 pub mod neighbors;
@@ -39,6 +40,7 @@ pub mod walls;
 
 pub use build::BuildOptions;
 pub use edit::{Edit, EditError};
+pub use expect::Watch;
 pub use math::{Real, Vector, Vector64};
 pub use phase::{MaterialIndex, Phase};
 pub use state::{State, StateError};

@@ -11,6 +11,7 @@ use crate::rows::RowIndex;
 use crate::walls::Walls;
 
 /// The bodies of a run, their contacts, and the ids of their samples.
+#[derive(Clone, serde::Serialize, serde::Deserialize)]
 pub struct RigidBodies {
     pub(crate) bodies: Bodies,
     pub(crate) contacts: Contacts,
@@ -22,7 +23,7 @@ pub struct RigidBodies {
 }
 
 /// A fluid particle that may be inside a body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 struct Trespasser {
     row: u32,
     body: u32,
@@ -44,6 +45,11 @@ impl RigidBodies {
     /// The bodies as they are read from outside.
     pub fn views(&self) -> &[Body] {
         self.bodies.views()
+    }
+
+    /// Whether both hold the same bodies, perhaps at different times.
+    pub(crate) fn is_like(&self, other: &RigidBodies) -> bool {
+        self.first_sample == other.first_sample && self.bodies.is_like(&other.bodies)
     }
 
     /// Bodies that may have to carry each other: the height of all that are awake over the smallest.

@@ -37,6 +37,7 @@ pub fn edit(
     changes: Vec<(String, Vec<u32>, Values<'_>)>,
     removals: Vec<u32>,
     additions: Vec<Addition<'_>>,
+    bodies: Vec<(u32, [f64; 2], f64)>,
 ) -> PyResult<Edit> {
     let mut edit = Edit::new().remove(removals);
     for (kind, ids, values) in changes {
@@ -49,6 +50,9 @@ pub fn edit(
             ("motion", Values::Word(word)) => edit.set_motion(ids, motion(py, &word)?),
             _ => return Err(errors::edit_message(py, &format!("no such change: {kind}"))),
         };
+    }
+    for (body, velocity, angular_velocity) in bodies {
+        edit = edit.set_body_velocity(body, velocity.into(), angular_velocity);
     }
     for addition in additions {
         edit = edit.add_points(Points {

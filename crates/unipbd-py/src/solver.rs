@@ -128,9 +128,10 @@ impl Solver {
         changes: Vec<(String, Vec<u32>, Values<'_>)>,
         removals: Vec<u32>,
         additions: Vec<Addition<'_>>,
+        bodies: Vec<(u32, [f64; 2], f64)>,
     ) -> PyResult<(u32, u32)> {
         let mut world = self.lock(py)?;
-        let edit = edit::edit(py, changes, removals, additions)?;
+        let edit = edit::edit(py, changes, removals, additions, bodies)?;
         world.order = None;
         let solver = &mut world.running.solver;
         let added = py.detach(|| solver.apply(&edit)).map_err(|error| errors::edit(py, &error))?;

@@ -28,7 +28,7 @@ Exit codes:
     2  wrong arguments, or an output that exists and --force was not given
     3  the scene file has errors
     4  the simulation diverged (the log up to there is kept)
-    5  a --stop-on condition was met
+    5  a --stop-on condition was met, or an expectation of a scene does not hold
   130  interrupted by Ctrl-C (the frame is finished and the log closed; press twice to quit at once)
 
 Environment:
@@ -83,6 +83,9 @@ pub enum Command {
         after_help = "Examples:\n  unipbd check scenes/dam_break.toml\n  unipbd check my_scene.toml --set spacing=0.01 --json"
     )]
     Check(CheckArgs),
+    /// Run scenes and compare them with their [expect] tables
+    #[command(after_help = EXPECT_HELP)]
+    Expect(ExpectArgs),
     /// Summarise a scene or a log
     #[command(after_help = "Examples:\n  unipbd info scenes/open_gas.toml\n  unipbd info open_gas.mcap --json")]
     Info(InfoArgs),
@@ -103,6 +106,27 @@ pub struct CheckArgs {
     #[command(flatten)]
     pub changes: SceneChanges,
     /// Threads of the run that is estimated [default: all]
+    #[arg(long, value_name = "N", help_heading = "Running", env = "UNIPBD_THREADS", hide_env_values = true, value_parser = run::thread_count)]
+    pub threads: Option<usize>,
+}
+
+const EXPECT_HELP: &str = "\
+Examples:
+  unipbd expect scenes/*.toml
+  unipbd expect scenes/dam_break.toml --set solver.substeps=16
+
+Exit code 5 when a scene does not do what its [expect] table says; every line that does not hold is named.";
+
+/// Arguments of `expect`.
+#[derive(Debug, Args)]
+pub struct ExpectArgs {
+    /// The scene files (.toml)
+    #[arg(value_name = "SCENE", required = true)]
+    pub scenes: Vec<PathBuf>,
+    /// Changes to each scene.
+    #[command(flatten)]
+    pub changes: SceneChanges,
+    /// Threads to use [default: all]; never changes results
     #[arg(long, value_name = "N", help_heading = "Running", env = "UNIPBD_THREADS", hide_env_values = true, value_parser = run::thread_count)]
     pub threads: Option<usize>,
 }

@@ -2,6 +2,7 @@
 
 mod check;
 mod estimate;
+mod expect;
 mod info;
 mod recording;
 mod render;
@@ -18,6 +19,7 @@ pub fn execute(command: &Command, console: Console) -> Result<Exit, Failure> {
     match command {
         Command::Run(arguments) => run::run(arguments, console),
         Command::Check(arguments) => check::check(arguments, console),
+        Command::Expect(arguments) => expect::expect(arguments, console),
         Command::Info(arguments) => info::info(arguments, console),
         Command::Render(arguments) => render::render(arguments, console),
         Command::Schema => schema::schema(console),

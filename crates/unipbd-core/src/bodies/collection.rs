@@ -5,7 +5,7 @@ use crate::math::Vector64;
 use crate::shapes::{Core, Shape, ShapeError};
 
 /// How a body answers to a push: its inverse mass and inertia, both 0 for what nothing moves.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Response {
     /// Inverse mass [1/kg].
     pub linear: f64,
@@ -14,7 +14,7 @@ pub struct Response {
 }
 
 /// What a body keeps for life.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 struct Script {
     /// Pose of the outline's origin at time zero.
     start: Pose,
@@ -25,7 +25,7 @@ struct Script {
 }
 
 /// All bodies of a run. A body's index is its id: bodies are never removed or renumbered.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Bodies {
     /// Distance of lattice samples, twice the largest contact radius [m].
     spacing: f64,
@@ -110,6 +110,21 @@ impl Bodies {
         let id = self.len() - 1;
         self.refresh_view(id);
         Ok(id as u32)
+    }
+
+    /// Whether both hold bodies of the same shapes and names, perhaps at different times.
+    pub(crate) fn is_like(&self, other: &Bodies) -> bool {
+        let bodies = self.len();
+        let twists = [&self.velocities, &self.displacements, &self.contact_loads, &self.fluid_loads];
+        let responses = [&self.awake_responses, &self.responses];
+        let whole = twists.iter().all(|column| column.len() == bodies)
+            && responses.iter().all(|column| column.len() == bodies)
+            && [&self.reaches, &self.sizes].iter().all(|column| column.len() == bodies)
+            && [&self.asleep, &self.pushed].iter().all(|column| column.len() == bodies)
+            && self.cores == other.cores
+            && self.scripts.len() == bodies;
+        let same = |(a, b): (&Body, &Body)| a.name == b.name && a.kind == b.kind && a.samples.len() == b.samples.len();
+        whole && self.views.len() == bodies && bodies == other.len() && self.views.iter().zip(&other.views).all(same)
     }
 
     /// The bodies as they are read from outside, in id order; up to date after [`Bodies::finish_frame`].

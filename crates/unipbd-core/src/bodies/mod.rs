@@ -24,7 +24,7 @@ pub enum BodyKind {
 }
 
 /// Place and orientation.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Pose {
     /// Place [m].
     pub position: Vector64,
@@ -40,7 +40,7 @@ impl Pose {
 }
 
 /// A linear and an angular part: a velocity, a displacement, or an impulse with its moment.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Twist {
     /// Linear part, of the centre of mass.
     pub linear: Vector64,
@@ -78,7 +78,7 @@ impl std::ops::SubAssign for Twist {
 }
 
 /// A rigid body, as it can be read from outside.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Body {
     /// Name given in the scene.
     pub name: String,

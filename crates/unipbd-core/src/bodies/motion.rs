@@ -5,7 +5,7 @@ use crate::math::Vector64;
 use std::f64::consts::TAU;
 
 /// A script: where the origin of a kinematic body is at each time.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Motion {
     /// It stays where it started.
     #[default]
@@ -38,7 +38,7 @@ pub enum Motion {
 }
 
 /// A station of a path.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Waypoint {
     /// When [s].
     pub time: f64,
@@ -49,7 +49,7 @@ pub struct Waypoint {
 }
 
 /// What a path does after its last waypoint.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Repeat {
     /// Rest there.
     #[default]

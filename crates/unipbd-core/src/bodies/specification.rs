@@ -4,7 +4,7 @@ use super::{BodyKind, Motion, Pose, Twist};
 use crate::shapes::Shape;
 
 /// How a surface rubs and rebounds.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Surface {
     /// Coulomb coefficient below which a contact sticks.
     pub static_friction: f64,
@@ -47,7 +47,7 @@ impl Surface {
 }
 
 /// Who collides with whom: both must list a layer the other is in.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct CollisionFilter {
     /// Layers the body is in, one bit each.
     pub layers: u32,

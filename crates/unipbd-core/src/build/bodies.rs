@@ -1,5 +1,6 @@
 //! Bodies, joints and walls of a scene as the contact solver takes them.
 
+use super::carve::Solid;
 use crate::bodies::{
     Bodies, BodySpec, CollisionFilter, MassSpec, Motion, Pose, Repeat, Rotation, Surface, Twist, Waypoint,
 };
@@ -24,6 +25,28 @@ pub(super) fn build(scene: &Scene) -> (Bodies, Contacts) {
         }
     }
     (bodies, contacts)
+}
+
+/// The names of all bodies, copies included.
+pub(crate) fn body_names(scene: &Scene) -> Vec<String> {
+    let named = |(number, description)| specifications(description, number).into_iter().map(|spec| spec.name);
+    scene.body.iter().enumerate().flat_map(named).collect()
+}
+
+/// Where a body and its copies start [m].
+pub(crate) fn body_copies(description: &BodyDescription) -> Vec<[f64; 2]> {
+    specifications(description, 0).iter().map(|spec| spec.pose.position.into()).collect()
+}
+
+/// All bodies where they start.
+pub(super) fn solids(scene: &Scene) -> Vec<Solid> {
+    let specs = scene.body.iter().enumerate().flat_map(|(number, description)| specifications(description, number));
+    let start = |spec: BodySpec| {
+        let moves = spec.kind == crate::bodies::BodyKind::Kinematic;
+        let pose = if moves { spec.motion.pose(spec.pose, 0.0) } else { spec.pose };
+        Solid { shape: spec.shape.tidied(), pose }
+    };
+    specs.map(start).collect()
 }
 
 /// A body and its copies.

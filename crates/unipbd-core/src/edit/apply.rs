@@ -27,6 +27,9 @@ impl Solver {
         let mut rows = RowIndex::default();
         rows.rebuild(self.ids());
         edit.changes.iter().for_each(|change| self.change(change, &rows));
+        if let Some(rigid) = &mut self.world.parts.rigid {
+            edit.bodies.iter().for_each(|&(body, velocity)| rigid.bodies.set_velocity(body, velocity));
+        }
         let mut removed: Vec<u32> = edit.removals.iter().filter_map(|&id| rows.row(id)).collect();
         removed.sort_unstable();
         self.world.parts.particles.remove_rows(&removed);

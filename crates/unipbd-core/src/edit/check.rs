@@ -1,6 +1,7 @@
 //! Whether an edit can be made as a whole.
 
 use super::{Change, Edit, EditError, Points, Values};
+use crate::bodies::{BodyKind, Twist};
 use crate::math::Vector64;
 use crate::observe::Material;
 use crate::phase::Phase;
@@ -26,7 +27,10 @@ impl<'a> Checker<'a> {
             self.ids(&change.ids)?;
             self.values(change)?;
         }
+        let changed = edit.changes.iter().flat_map(|change| &change.ids);
+        self.no_samples(changed.chain(&edit.removals).copied().collect())?;
         self.ids(&edit.removals)?;
+        edit.bodies.iter().try_for_each(|(body, velocity)| self.body(*body, velocity))?;
         edit.additions.iter().try_for_each(|points| self.points(points))?;
         let added: usize = edit.additions.iter().map(|points| points.positions.len()).sum();
         let left = (u32::MAX - self.solver.particles().ids_given()) as usize;
@@ -65,6 +69,34 @@ impl<'a> Checker<'a> {
             }
             Values::Motion(_) => self.motion(&change.ids),
         }
+    }
+
+    /// Samples go where their body goes, and stay as long as it does.
+    fn no_samples(&self, mut ids: Vec<u32>) -> Result<(), EditError> {
+        let particles = self.solver.particles();
+        if !particles.phases().contains(&Phase::Rigid) {
+            return Ok(());
+        }
+        ids.sort_unstable();
+        let sample =
+            |row: &usize| particles.phases()[*row] == Phase::Rigid && ids.binary_search(&particles.ids()[*row]).is_ok();
+        match (0..particles.len()).find(sample) {
+            Some(row) => {
+                let id = particles.ids()[row];
+                Err(EditError::Unfit(format!("particle {id} is a sample of a rigid body: change the body instead")))
+            }
+            None => Ok(()),
+        }
+    }
+
+    fn body(&self, id: u32, velocity: &Twist) -> Result<(), EditError> {
+        let bodies = self.solver.bodies();
+        let body = bodies.get(id as usize).ok_or_else(|| EditError::Unfit(format!("there is no body {id}")))?;
+        if body.kind != BodyKind::Dynamic {
+            return Err(EditError::Unfit(format!("the body \"{}\" is not dynamic: nothing pushes it", body.name)));
+        }
+        self.velocities(&[velocity.linear])?;
+        finite("angular velocity", 0, velocity.angular)
     }
 
     /// Smoke follows its carrier, whatever is asked of it.

@@ -16,6 +16,7 @@ mod error;
 
 pub use error::EditError;
 
+use crate::bodies::Twist;
 use crate::math::Vector64;
 use crate::scene::PointMotion;
 
@@ -24,6 +25,7 @@ use crate::scene::PointMotion;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Edit {
     changes: Vec<Change>,
+    bodies: Vec<(u32, Twist)>,
     removals: Vec<u32>,
     additions: Vec<Points>,
 }
@@ -104,6 +106,14 @@ impl Edit {
         self.change(ids, Values::Motion(motion))
     }
 
+    /// Gives a dynamic body this velocity of its centre of mass [m/s] and angular velocity [rad/s].
+    /// Bodies are named by their place in [`Solver::bodies`](crate::Solver::bodies).
+    #[must_use]
+    pub fn set_body_velocity(mut self, body: u32, velocity: Vector64, angular_velocity: f64) -> Self {
+        self.bodies.push((body, Twist { linear: velocity, angular: angular_velocity }));
+        self
+    }
+
     /// Removes particles.
     #[must_use]
     pub fn remove(mut self, ids: impl IntoIterator<Item = u32>) -> Self {
@@ -120,7 +130,7 @@ impl Edit {
 
     /// Whether there is nothing to do.
     pub fn is_empty(&self) -> bool {
-        self.changes.is_empty() && self.removals.is_empty() && self.additions.is_empty()
+        self.changes.is_empty() && self.bodies.is_empty() && self.removals.is_empty() && self.additions.is_empty()
     }
 
     fn change(mut self, ids: impl Into<Vec<u32>>, values: Values) -> Self {

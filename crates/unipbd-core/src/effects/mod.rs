@@ -4,6 +4,7 @@
 mod conduction;
 mod confinement;
 mod drag;
+mod heating;
 mod shear_viscosity;
 mod smoke;
 mod viscosity;
@@ -12,6 +13,7 @@ mod wind;
 pub use conduction::Conduction;
 pub use confinement::VorticityConfinement;
 pub use drag::Drag;
+pub use heating::Heating;
 pub use shear_viscosity::ShearViscosity;
 pub use smoke::SmokeAdvection;
 pub use viscosity::Viscosity;

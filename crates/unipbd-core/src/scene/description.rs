@@ -1,8 +1,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Block, BodyDescription, Disc, Emitter, Gas, HalfPlane, JointDescription, Liquid, Obstacle, Points, Smoke, Solid,
-    SolverSettings, Tank,
+    Block, BodyDescription, Disc, Emitter, Expect, Gas, HalfPlane, Heater, Injector, JointDescription, Liquid,
+    Obstacle, Points, Sink, Smoke, Solid, SolverSettings, Tank, Wave,
 };
 
 /// A whole scene. All quantities are in SI units; angles carry the suffix `_deg`.
@@ -71,6 +71,21 @@ pub struct Scene {
     /// Static boxes: particles stay outside.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub obstacle: Vec<Obstacle>,
+    /// Waves of the start.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub wave: Vec<Wave>,
+    /// Sources of particles at random places of a region.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub injector: Vec<Injector>,
+    /// Regions that take particles away.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub sink: Vec<Sink>,
+    /// Regions that warm or cool gas.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub heater: Vec<Heater>,
+    /// What a run is expected to do.
+    #[serde(skip_serializing_if = "is_default")]
+    pub expect: Expect,
 }
 
 impl Default for Scene {
@@ -100,8 +115,17 @@ impl Default for Scene {
             body: Vec::new(),
             joint: Vec::new(),
             obstacle: Vec::new(),
+            wave: Vec::new(),
+            injector: Vec::new(),
+            sink: Vec::new(),
+            heater: Vec::new(),
+            expect: Expect::default(),
         }
     }
+}
+
+fn is_default(expect: &Expect) -> bool {
+    *expect == Expect::default()
 }
 
 /// The air around an open scene: what drag pulls towards.

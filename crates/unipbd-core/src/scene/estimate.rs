@@ -39,7 +39,8 @@ impl Scene {
     pub fn estimate(&self) -> Estimate {
         let population = population(self);
         let emitted_per_second =
-            self.emitter.iter().map(|emitter| rates(emitter, self.spacing)).map(|r| r.0 + r.1).sum();
+            self.emitter.iter().map(|emitter| rates(emitter, self.spacing)).map(|r| r.0 + r.1).sum::<f64>()
+                + self.injector.iter().map(|injector| injector.rate).sum::<f64>();
         let substeps = match self.solver.substeps {
             Substeps::Fixed(count) => count,
             Substeps::Auto => automatic_substeps(self),
@@ -141,6 +142,14 @@ fn changes(scene: &Scene) -> Vec<Change> {
             changes.push(step(emitter.start + lifetime, -rate));
             changes.push(step(stop + lifetime, rate));
         }
+    }
+    for injector in &scene.injector {
+        let (lifetime, stop) = (scene.lifetime(&injector.material), injector.stop.unwrap_or(f64::INFINITY));
+        let step = |time, rate| Change { time, rate, jump: 0.0 };
+        changes.push(step(injector.start, injector.rate));
+        changes.push(step(stop, -injector.rate));
+        changes.push(step(injector.start + lifetime, -injector.rate));
+        changes.push(step(stop + lifetime, injector.rate));
     }
     changes
 }

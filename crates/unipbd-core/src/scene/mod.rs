@@ -6,29 +6,35 @@
 mod bodies;
 mod description;
 mod estimate;
+mod expect;
 mod layout;
 mod materials;
 mod nearest;
 mod points;
 mod problem;
+mod regions;
 mod settings;
 mod shorthand;
 mod sources;
 mod validate;
 mod walls;
+mod waves;
 
 pub use bodies::{
     BodyDescription, Copies, Heap, JointDescription, JointRule, MotionDescription, RotationRule, Station,
 };
 pub use description::{Domain, Environment, Scene, View};
 pub use estimate::{BYTES_PER_PARTICLE, Estimate, SECONDS_PER_PARTICLE_AND_SUBSTEP};
+pub use expect::{BodyExpectation, Expect, MaterialExpectation};
 pub use materials::{Gas, Liquid, LiquidSurface, MaterialRef, Smoke, Solid};
 pub use nearest::nearest;
 pub use points::{PointMotion, Points};
 pub use problem::{KeyPath, KeySegment, Problem, Problems};
+pub use regions::{Heater, Injector, Region, Sink};
 pub use settings::{GradientPoint, KernelKind, SolverSettings, Substeps};
 pub use sources::{Block, Disc, Emitter, Profile, Sheath, SmokeSource};
 pub use walls::{HalfPlane, Obstacle, Side, Slip, Tank};
+pub use waves::Wave;
 
 pub(crate) use layout::{block_points, disc_points};
 pub(crate) use validate::FARTHEST;

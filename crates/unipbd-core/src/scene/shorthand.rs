@@ -1,6 +1,7 @@
 //! Short ways to write scenes in Rust.
 
-use super::{Block, Liquid, Side, Slip, Smoke, Tank};
+use super::{Block, BodyDescription, Liquid, RotationRule, Side, Slip, Smoke, Tank};
+use crate::bodies::BodyKind;
 
 impl Liquid {
     /// A liquid of this rest density [kg/m^2], everything else as by default.
@@ -27,5 +28,48 @@ impl Tank {
     /// A container without friction, open at the top, from its lower left to its upper right corner [m].
     pub fn new(min: [f64; 2], max: [f64; 2]) -> Self {
         Tank { min, max, open: vec![Side::Top], friction: 0.0, slip: Slip::Free }
+    }
+}
+
+impl BodyDescription {
+    /// A box of this width and height about a place [m], of water's density.
+    pub fn rectangle(size: [f64; 2], position: [f64; 2]) -> Self {
+        BodyDescription { size: Some(size), ..BodyDescription::at(position) }
+    }
+
+    /// A disc about a place [m], of water's density.
+    pub fn disc(radius: f64, position: [f64; 2]) -> Self {
+        BodyDescription { radius: Some(radius), ..BodyDescription::at(position) }
+    }
+
+    /// A polygon whose corners are seen from a place [m], of water's density.
+    pub fn polygon(outline: Vec<[f64; 2]>, position: [f64; 2]) -> Self {
+        BodyDescription { outline: Some(outline), ..BodyDescription::at(position) }
+    }
+
+    fn at(position: [f64; 2]) -> Self {
+        BodyDescription {
+            name: String::new(),
+            kind: BodyKind::Dynamic,
+            radius: None,
+            size: None,
+            outline: None,
+            position,
+            angle_deg: 0.0,
+            velocity: [0.0; 2],
+            spin_deg: 0.0,
+            density: 1000.0,
+            mass: None,
+            friction: 0.5,
+            kinetic_friction: None,
+            rolling_friction: 0.0,
+            restitution: 0.0,
+            layers: vec![0],
+            collides_with: None,
+            rotation: RotationRule::Free,
+            gravity_factor: 1.0,
+            motion: None,
+            copies: None,
+        }
     }
 }

@@ -7,7 +7,7 @@ use super::{Shape, decompose::convex_decomposition, polygon};
 use crate::math::Vector64;
 
 /// The rounded convex pieces of a solid.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Core {
     /// How far the surface lies outside the pieces [m].
     pub radius: f64,
@@ -16,7 +16,7 @@ pub struct Core {
 }
 
 /// A convex polygon, counter-clockwise.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ConvexPiece {
     /// Vertices [m].
     pub vertices: Vec<Vector64>,

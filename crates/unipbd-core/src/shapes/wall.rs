@@ -5,7 +5,7 @@ use crate::bodies::Surface;
 use crate::math::Vector64;
 
 /// The geometry of a wall.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Boundary {
     /// Everything behind an endless straight line is solid.
     HalfPlane {
@@ -26,7 +26,7 @@ pub enum Boundary {
 }
 
 /// A static wall.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Wall {
     /// Where it is.
     pub boundary: Boundary,

@@ -4,6 +4,7 @@
 //! in front see a full neighbourhood; the first to cross the face is let go, and a new one is added
 //! three spacings behind. (Points set free at random press on each other ten times harder.)
 
+use super::injector::RegionInjector;
 use crate::math::{Real, Vector, Vector64, real, vector};
 use crate::neighbors::Neighbors;
 use crate::particles::{NewParticle, Particles};
@@ -20,6 +21,7 @@ const THROTTLE_COMPRESSION: f64 = 0.02;
 /// All emitters of a scene.
 pub struct EmitterSystem {
     emitters: Vec<Nozzle>,
+    injectors: Vec<RegionInjector>,
 }
 
 struct Nozzle {
@@ -60,7 +62,11 @@ impl EmitterSystem {
     /// The emitters of a scene.
     pub fn new(scene: &Scene, seed: u64) -> Self {
         let nozzle = |(number, emitter)| Nozzle::new(emitter, scene, Rng::new(seed, number as u64));
-        EmitterSystem { emitters: scene.emitter.iter().enumerate().map(nozzle).collect() }
+        let injector = |(number, injector)| RegionInjector::new(injector, scene, seed, number);
+        EmitterSystem {
+            emitters: scene.emitter.iter().enumerate().map(nozzle).collect(),
+            injectors: scene.injector.iter().enumerate().filter_map(injector).collect(),
+        }
     }
 
     /// Fastest speed at which any emitter pushes at this time [m/s].
@@ -83,12 +89,16 @@ impl EmitterSystem {
         for nozzle in &mut self.emitters {
             nozzle.advance(time, dt, particles, rows, neighbors);
         }
+        for injector in &self.injectors {
+            injector.advance(time, dt, particles, neighbors);
+        }
         u64::from(particles.ids_given() - before)
     }
 
     /// Whether the next [`advance`](Self::advance) by `dt` adds particles or lets some go.
     pub fn will_change(&self, time: f64, dt: f64) -> bool {
         self.emitters.iter().any(|nozzle| nozzle.will_change(time, dt))
+            || self.injectors.iter().any(|injector| injector.will_change(time, dt))
     }
 
     /// Number of columns of each emitter.

@@ -1,8 +1,10 @@
 //! Where particles come from and where they go: emitters and removal rules.
 
 mod emitter;
+mod injector;
 mod removal;
 mod saved;
+mod sink;
 
 pub use emitter::EmitterSystem;
 pub use removal::RemovalRules;

@@ -1,5 +1,6 @@
 //! Removal: past its lifetime, outside the domain, or gas with no smoke near.
 
+use super::sink::RegionSink;
 use crate::math::{Real, Vector, Vector64, real, vector};
 use crate::neighbors::{Cursor, Grid, Periodic};
 use crate::parallel::Parallelism;
@@ -13,6 +14,8 @@ pub struct RemovalRules {
     region: Option<(Vector, Vector)>,
     keep_radius: Real,
     smoke: Grid,
+    sinks: Vec<RegionSink>,
+    frame_time: f64,
 }
 
 #[derive(Clone, Copy)]
@@ -54,11 +57,13 @@ impl RemovalRules {
         });
         let keep_radius = materials.iter().filter_map(|rule| rule.keep_radius).fold(0.0, Real::max);
         let any = materials.iter().any(|rule| rule.lifetime.is_finite());
-        (any || region.is_some() || keep_radius > 0.0).then(|| RemovalRules {
+        (any || region.is_some() || keep_radius > 0.0 || !scene.sink.is_empty()).then(|| RemovalRules {
             materials,
             region,
             keep_radius,
             smoke: Grid::new(periodic),
+            sinks: scene.sink.iter().map(|sink| RegionSink::new(sink, scene)).collect(),
+            frame_time: 1.0 / scene.fps,
         })
     }
 
@@ -67,12 +72,29 @@ impl RemovalRules {
         self.keep_radius > 0.0 || self.materials.iter().any(|rule| rule.lifetime.is_finite())
     }
 
-    /// Collects the rows to remove, in ascending order.
-    pub fn find(&mut self, particles: &Particles, parallelism: Parallelism, rows: &mut Vec<u32>) {
+    /// Collects the rows to remove at this time [s], in ascending order.
+    pub fn find(&mut self, particles: &Particles, time: f64, parallelism: Parallelism, rows: &mut Vec<u32>) {
         rows.clear();
         let smoke = self.sorted_smoke(particles, parallelism);
         let gone = |row: usize| self.is_expired(particles, row) || self.is_abandoned(particles, row, &smoke);
         rows.extend((0..particles.len() as u32).filter(|&row| gone(row as usize)));
+        self.drain(particles, time, rows);
+    }
+
+    /// Adds what sinks take, the particles with the lowest ids first.
+    fn drain(&self, particles: &Particles, time: f64, rows: &mut Vec<u32>) {
+        for sink in &self.sinks {
+            let allowance = sink.allowance(time, self.frame_time);
+            let taken = |row: &u32| {
+                let movable = particles.phase[*row as usize] != Phase::Rigid && !is_scripted(particles, *row as usize);
+                movable && sink.takes(particles, *row as usize) && rows.binary_search(row).is_err()
+            };
+            let mut found: Vec<u32> = (0..particles.len() as u32).filter(taken).collect();
+            found.sort_unstable_by_key(|&row| particles.id[row as usize]);
+            found.truncate(allowance);
+            rows.extend(found);
+            rows.sort_unstable();
+        }
     }
 
     fn is_expired(&self, particles: &Particles, row: usize) -> bool {

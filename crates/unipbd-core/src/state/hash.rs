@@ -1,5 +1,6 @@
 //! The state of a run as one number.
 
+use crate::bodies::Body;
 use crate::math::{Real, Vector};
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
@@ -8,7 +9,7 @@ use crate::step::Solver;
 
 impl Solver {
     /// Hash of the state: id, material, position, remainder, velocity, mass, temperature and age of
-    /// every particle, and the number of substeps done. Independent of the order of rows, so the same
+    /// every particle, pose and velocity of every body, and the number of substeps done. Independent of the order of rows, so the same
     /// on any number of threads; two states with the same hash go on the same.
     pub fn state_hash(&self) -> u64 {
         let particles = self.particles();
@@ -17,8 +18,16 @@ impl Solver {
             |rows| rows.map(|row| particle_hash(particles, row)).fold(0, u64::wrapping_add),
             u64::wrapping_add,
         );
-        mix(sum ^ mix(self.step()))
+        let bodies = self.bodies().iter().fold(0, |hash: u64, body| mix(hash.rotate_left(7) ^ body_hash(body)));
+        mix(sum ^ mix(self.step()) ^ bodies)
     }
+}
+
+fn body_hash(body: &Body) -> u64 {
+    let pose = [body.position.x, body.position.y, body.angle];
+    let velocity = [body.velocity.x, body.velocity.y, body.angular_velocity];
+    let words = pose.into_iter().chain(velocity).map(f64::to_bits).chain([u64::from(body.asleep)]);
+    words.fold(0, |hash, word| mix(hash.rotate_left(7) ^ word))
 }
 
 fn particle_hash(particles: &Particles, row: usize) -> u64 {

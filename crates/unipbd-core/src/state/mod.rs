@@ -4,6 +4,7 @@
 //! rounding remainders, multipliers, the reference positions and the skin of the neighbour list (the
 //! same list is made from them again), clock, emitters, groups. Saving never changes a run.
 
+mod bodies;
 mod check;
 mod error;
 mod file;

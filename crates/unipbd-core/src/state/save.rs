@@ -1,11 +1,13 @@
 use super::error::damaged;
 use super::structure::structure;
-use super::{Section, State, StateError};
+use super::{Section, State, StateError, bodies};
 use crate::math::real;
+use crate::rigid::RigidBodies;
 use crate::step::{Clock, Solver};
 
 const EMITTERS: &str = "emitters";
 const SMOKE: &str = "smoke";
+const BODIES: &str = "bodies";
 
 impl Solver {
     /// Everything this run goes on from. Changes nothing.
@@ -20,6 +22,9 @@ impl Solver {
         }
         if let Some(smoke) = &parts.smoke {
             section(SMOKE, vec![f64::from(smoke.last_dt()).to_bits()]);
+        }
+        if let Some(rigid) = &parts.rigid {
+            section(BODIES, bodies::to_words(rigid));
         }
         for group in &parts.groups {
             section(group.name(), group.save());
@@ -42,6 +47,7 @@ impl Solver {
     /// has changed then.
     pub fn restore(&mut self, state: &State) -> Result<(), StateError> {
         self.accept(state)?;
+        let rigid = self.saved_bodies(state)?;
         let generation = self.world.clock.generation;
         let world = &mut self.world;
         let mut sections = state.sections.iter();
@@ -52,6 +58,10 @@ impl Solver {
         if let Some(smoke) = &mut world.parts.smoke {
             smoke.set_last_dt(real(next().first().copied().map_or(0.0, f64::from_bits)));
         }
+        if rigid.is_some() {
+            next();
+            world.parts.rigid = rigid;
+        }
         for group in &mut world.parts.groups {
             group.restore(next());
         }
@@ -61,6 +71,14 @@ impl Solver {
         world.parts.particles.clone_from(&state.particles);
         self.on_threads(|world| world.restore_list(&state.list));
         Ok(())
+    }
+
+    /// The bodies of a state, where the run has some.
+    fn saved_bodies(&self, state: &State) -> Result<Option<RigidBodies>, StateError> {
+        let Some(running) = &self.world.parts.rigid else { return Ok(None) };
+        let section = state.sections.iter().find(|section| section.name == BODIES);
+        let words = section.map_or(&[][..], |section| &section.words);
+        bodies::from_words(words, running).map(Some)
     }
 
     /// Whether the state belongs to a run like this one.
@@ -74,6 +92,7 @@ impl Solver {
         }
         let parts = &self.world.parts;
         let names = parts.emitters.iter().map(|_| EMITTERS).chain(parts.smoke.iter().map(|_| SMOKE));
+        let names = names.chain(parts.rigid.iter().map(|_| BODIES));
         let names = names.chain(parts.groups.iter().map(|group| group.name()));
         if !names.eq(state.sections.iter().map(|section| &section.name[..])) {
             return Err(damaged("it lacks a part of the run"));

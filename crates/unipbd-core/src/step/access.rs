@@ -117,6 +117,11 @@ impl Solver {
         self.world.parts.walls.outlines()
     }
 
+    /// Static walls.
+    pub fn walls(&self) -> &crate::walls::Walls {
+        &self.world.parts.walls
+    }
+
     /// Takes the events since the last call.
     pub fn take_events(&mut self) -> Vec<Event> {
         std::mem::take(&mut self.world.events)

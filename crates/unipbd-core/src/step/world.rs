@@ -265,7 +265,7 @@ impl World {
 
     fn remove(&mut self) -> u64 {
         let Some(rules) = &mut self.parts.removal else { return 0 };
-        rules.find(&self.parts.particles, self.parts.parallelism, &mut self.removed);
+        rules.find(&self.parts.particles, self.clock.time, self.parts.parallelism, &mut self.removed);
         if self.removed.is_empty() {
             return 0;
         }

@@ -2,7 +2,7 @@ use crate::scenes::{build, liquid, mixed, plume, points, run};
 use proptest::prelude::*;
 use unipbd_core::edit::Points;
 use unipbd_core::math::wide;
-use unipbd_core::scene::{PointMotion, Scene, Solid};
+use unipbd_core::scene::{BodyDescription, PointMotion, Scene, Solid};
 use unipbd_core::{Edit, EditError, Solver, Vector, Vector64};
 
 fn row(solver: &Solver, id: u32) -> usize {
@@ -92,6 +92,27 @@ fn a_scripted_particle_of_a_uniform_liquid_stays_put() {
     solver.apply(&edit).unwrap();
     run(&mut solver, 60);
     assert_eq!(wide(solver.positions()[row(&solver, 55)]), at);
+}
+
+#[test]
+fn bodies_are_pushed_as_a_whole_and_their_samples_left_alone() {
+    let mut scene = liquid();
+    scene.body.push(BodyDescription::rectangle([0.4, 0.4], [1.8, 2.0]));
+    let mut solver = build(&scene);
+    run(&mut solver, 2);
+    let edit = Edit::new().set_body_velocity(0, Vector64::new(0.5, 1.0), 2.0);
+    solver.apply(&edit).unwrap();
+    assert_eq!((solver.bodies()[0].velocity, solver.bodies()[0].angular_velocity), (Vector64::new(0.5, 1.0), 2.0));
+    let before = solver.bodies()[0].position;
+    run(&mut solver, 3);
+    assert!(solver.bodies()[0].position.x > before.x + 0.01);
+    let sample = (0..solver.ids().len()).find(|&row| solver.phases()[row] == unipbd_core::Phase::Rigid).unwrap();
+    let sample = solver.ids()[sample];
+    for edit in [Edit::new().remove([sample]), Edit::new().set_velocities([sample], [Vector64::X])] {
+        assert!(solver.apply(&edit).unwrap_err().to_string().contains("rigid body"));
+    }
+    assert!(solver.apply(&Edit::new().set_body_velocity(1, Vector64::X, 0.0)).is_err());
+    assert!(solver.apply(&Edit::new().set_body_velocity(0, Vector64::X, f64::NAN)).is_err());
 }
 
 #[test]

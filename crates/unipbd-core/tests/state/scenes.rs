@@ -1,8 +1,8 @@
 //! Small scenes of every kind.
 
 use unipbd_core::scene::{
-    Block, Disc, Emitter, Environment, Gas, Liquid, PointMotion, Points, Profile, Scene, Sheath, Slip, Smoke,
-    SmokeSource, Solid, SolverSettings, Substeps, Tank,
+    Block, BodyDescription, Disc, Emitter, Environment, Gas, Liquid, PointMotion, Points, Profile, Scene, Sheath, Slip,
+    Smoke, SmokeSource, Solid, SolverSettings, Substeps, Tank,
 };
 use unipbd_core::{BuildOptions, Solver};
 
@@ -94,8 +94,22 @@ pub fn mixed() -> Scene {
     }
 }
 
-pub fn all() -> [(&'static str, Scene); 3] {
-    [("liquid", liquid()), ("plume", plume()), ("mixed", mixed())]
+/// Boxes and a disc fall into a pool, and onto each other.
+pub fn bodies() -> Scene {
+    let raft = BodyDescription { density: 400.0, ..BodyDescription::rectangle([0.6, 0.3], [0.6, 1.3]) };
+    let stone = BodyDescription { density: 2500.0, ..BodyDescription::disc(0.2, [0.7, 1.8]) };
+    let boxes = BodyDescription::rectangle([0.3, 0.3], [1.7, 1.4]);
+    Scene {
+        liquid: vec![Liquid { name: "water".into(), ..Liquid::default() }],
+        block: vec![block("water", [0.0, 0.0], [2.5, 1.0])],
+        body: vec![raft, stone, boxes],
+        tank: vec![tank(2.5)],
+        ..Scene::default()
+    }
+}
+
+pub fn all() -> [(&'static str, Scene); 4] {
+    [("liquid", liquid()), ("plume", plume()), ("mixed", mixed()), ("bodies", bodies())]
 }
 
 pub fn build(scene: &Scene) -> Solver {

@@ -21,7 +21,7 @@ taken at, and a write into one raises ValueError. To change particles use `Simul
 from __future__ import annotations
 
 from ._batch import Batch
-from ._edit import Column, Edit
+from ._edit import BodyEdit, Column, Edit
 from ._errors import (
     BusyError,
     EditError,
@@ -49,6 +49,7 @@ __all__ = [
     "SOLID",
     "Batch",
     "Body",
+    "BodyEdit",
     "BusyError",
     "Column",
     "Edit",

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from ._arrays import Doubles, Ids, numbers, pairs, points
 from ._errors import EditError
+from ._phase import Phase
 from ._substep import id_list
 
 if TYPE_CHECKING:
@@ -20,7 +21,7 @@ class Column:
     """A column of particles to be changed, by id.
 
     The key is an array of ids, one id, a boolean mask over all particles in ascending order of
-    ids, or ``:``. Reading gives a copy; ``e.velocities[ids] *= 0.5`` works.
+    ids, or ``:`` for all but the samples of rigid bodies. Reading gives a copy; ``e.velocities[ids] *= 0.5`` works.
     """
 
     __slots__ = ("_changed", "_edit", "_name", "_values")
@@ -59,6 +60,36 @@ class Column:
         return f"<{self._name} of {len(self)} particles, {int(self._changed.sum())} changed>"
 
 
+class BodyEdit:
+    """A dynamic rigid body whose velocity is to be changed. See `Edit.bodies`."""
+
+    def __init__(self, name: str, velocity: Doubles, angular_velocity: float) -> None:
+        self._name = name
+        self._velocity = velocity
+        self._angular_velocity = angular_velocity
+        self._changed = False
+
+    @property
+    def velocity(self) -> Doubles:
+        """Velocity of the centre of mass [m/s], shape (2,), to be set."""
+        return self._velocity
+
+    @velocity.setter
+    def velocity(self, value: npt.ArrayLike) -> None:
+        self._velocity = pairs(value, 1, f"velocity of {self._name!r}", EditError)[0]
+        self._changed = True
+
+    @property
+    def angular_velocity(self) -> float:
+        """Angular velocity, counter-clockwise [rad/s], to be set."""
+        return self._angular_velocity
+
+    @angular_velocity.setter
+    def angular_velocity(self, value: float) -> None:
+        self._angular_velocity = float(value)
+        self._changed = True
+
+
 class Edit:
     """Changes of particles, made together when the `with` block ends. See `Simulation.edit`.
 
@@ -83,6 +114,11 @@ class Edit:
         self._temperatures = (
             None if temperatures is None else Column(self, "temperatures", temperatures.astype(np.float64))
         )
+        self.bodies = {
+            name: BodyEdit(name, body.velocity, body.angular_velocity) for name, body in simulation.bodies.items()
+        }
+        """Rigid bodies by name, to set their ``velocity`` and ``angular_velocity``."""
+        self._free = simulation.phases != Phase.RIGID
         self._motions: list[tuple[str, list[int], str]] = []
         self._removed: set[int] = set()
         self._added: list[dict[str, Any]] = []
@@ -146,7 +182,8 @@ class Edit:
         if isinstance(key, slice):
             if key != slice(None):
                 raise EditError("particles are named by ids, by a mask, or all by [:]")
-            return np.arange(len(self._ids))
+            # Samples of rigid bodies go where their body goes.
+            return np.flatnonzero(self._free)
         array = np.asarray(key)
         if array.dtype == bool:
             if array.shape != self._ids.shape:
@@ -187,7 +224,12 @@ class Edit:
         native = self._simulation._native
         if self._moment != (native.substeps_done, native.count):
             raise EditError("the simulation was stepped or edited within the edit")
-        first, last = native.apply(self._changes(), sorted(self._removed), self._added)
+        bodies = [
+            (index, body.velocity.tolist(), body.angular_velocity)
+            for index, body in enumerate(self.bodies.values())
+            if body._changed
+        ]
+        first, last = native.apply(self._changes(), sorted(self._removed), self._added, bodies)
         self.added = np.arange(first, last, dtype=np.uint32)
 
 

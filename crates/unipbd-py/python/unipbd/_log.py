@@ -106,6 +106,7 @@ class Log:
         """Names of the materials, by index."""
         self.phases: list[Phase] = [Phase(material["phase"]) for material in header["materials"]]
         """Phases of the materials, by index."""
+        self._fields: list[str] = header["fields"].split(",")
         self._frames: int | None = header["frames"]
         self._truncated = self._frames is None
 
@@ -123,7 +124,15 @@ class Log:
         reader = _native.LogReader(self.path)
         while (frame := reader.next_frame()) is not None:
             bodies = {body["name"]: body for body in frame.pop("bodies")}
+            if len(frame["ids"]) == 0:
+                frame |= self._empty_columns()
             yield LogFrame(bodies=bodies, **frame)
+
+    def _empty_columns(self) -> dict[str, Any]:
+        """Recorded columns of a frame without particles: empty, not missing."""
+        shapes = {"velocity": ("velocities", (0, 2)), "density": ("density_errors", (0,))}
+        known = [shapes[word] for word in self._fields if word in shapes]
+        return {name: np.empty(shape, dtype=np.float32) for name, shape in known}
 
     def __len__(self) -> int:
         if self._frames is None:

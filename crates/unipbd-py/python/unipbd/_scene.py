@@ -294,7 +294,7 @@ class Scene:
     @property
     def bodies(self) -> Mapping[str, Table]:
         """Rigid bodies by name."""
-        return _Named(self, ("body",) if "body" in _schema()["properties"] else (), "body")
+        return _Named(self, ("body",), "body")
 
     def describe(self) -> str:
         """What each key of a scene means, one per line."""
@@ -375,6 +375,35 @@ class Scene:
         """Adds a straight wall without end; particles stay on the side the normal points to."""
         return self.add("half_plane", point=point, normal=normal, **values)
 
+    def add_body(
+        self,
+        name: str,
+        at: tuple[float, float],
+        outline: npt.ArrayLike | None = None,
+        size: tuple[float, float] | None = None,
+        radius: float | None = None,
+        density: float = 1000.0,
+        **values: Any,
+    ) -> Table:
+        """Adds a rigid body at `at` [m]: a polygon (`outline`, shape (M, 2), seen from `at`), a box
+        (`size`: width and height) or a disc (`radius`), of this mass per area [kg/m^2].
+
+        Further keys are those of ``[[body]]`` in a scene file, such as ``angle_deg``, ``velocity``,
+        ``friction`` and ``kind="kinematic"``.
+        """
+        if outline is not None:
+            values["outline"] = points(outline, "outline", ValueError)
+        shape = {"size": size, "radius": radius}
+        values |= {key: value for key, value in shape.items() if value is not None}
+        return self.add("body", name=name, position=at, density=density, **values)
+
+    def add_joint(self, kind: str, body: str, at: tuple[float, float], **values: Any) -> Table:
+        """Links two bodies, or a body and the world, at a point [m].
+
+        `kind` is ``"hinge"``, ``"rod"`` or ``"rope"``; ``other`` names the second body.
+        """
+        return self.add("joint", kind=kind, body=body, at=at, **values)
+
     # -- use -----------------------------------------------------------------------------------
 
     def check(self) -> None:
@@ -409,7 +438,7 @@ class Scene:
     def to_dict(self) -> dict[str, Any]:
         """A copy as nested dicts and lists."""
         data: dict[str, Any] = plain(copy.deepcopy(self._data))
-        return data
+        return {key: value for key, value in data.items() if value != []}
 
     def copy(self) -> Scene:
         """An independent copy."""

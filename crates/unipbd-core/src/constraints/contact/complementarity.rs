@@ -1,7 +1,7 @@
 //! The smallest contact problem, solved exactly: one body pair that touches at one or two points.
 
 /// Response of two points to impulses at them: a symmetric matrix, `off` beside the diagonal.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Coupling {
     pub first: f64,
     pub second: f64,

@@ -10,7 +10,7 @@ use crate::shapes::Wall;
 use rayon::prelude::*;
 
 /// Two pieces, or a piece and a half-plane, that may touch.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 struct Pair {
     a: u32,
     b: u32,
@@ -29,7 +29,7 @@ const CHUNK: usize = 512;
 const PARALLEL_FROM: usize = 2048;
 
 /// The pairs that may touch, and the contacts found among them.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Finder {
     pieces: Pieces,
     excluded: Vec<(u32, u32)>,

@@ -8,7 +8,7 @@ use crate::math::Vector64;
 use rayon::prelude::*;
 
 /// Equal and opposite pushes on two bodies.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Push {
     pub linear: Vector64,
     pub angular_a: f64,
@@ -30,7 +30,7 @@ const PARALLEL_FROM: usize = 6000;
 const CHUNK: usize = 1024;
 
 /// Buffers of the sweeps.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Jacobi {
     /// Sum of the pushes of the last sweep, by body.
     pub sums: Vec<Twist>,

@@ -11,7 +11,7 @@ use crate::bodies::{Bodies, Pose, Response, Twist};
 use crate::math::Vector64;
 
 /// What a joint keeps.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum JointKind {
     /// The anchors coincide; the bodies may turn.
     Hinge {
@@ -30,7 +30,7 @@ pub enum JointKind {
 }
 
 /// Whether a distance may become smaller.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum DistanceRule {
     /// A rod: neither smaller nor larger.
     Exact,
@@ -39,7 +39,7 @@ pub enum DistanceRule {
 }
 
 /// Drives a hinge.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Motor {
     /// Wanted angular velocity of the first body relative to the second [rad/s].
     pub speed: f64,
@@ -48,7 +48,7 @@ pub struct Motor {
 }
 
 /// A joint; anchors are in body coordinates (from the centre of mass), or world coordinates.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Joint {
     /// First body.
     pub body: u32,
@@ -63,7 +63,7 @@ pub struct Joint {
 }
 
 /// A joint with its state in the solver.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Linked {
     pub joint: Joint,
     /// Impulse on the first body: a vector of a hinge, or along the line in x [kg m].

@@ -12,7 +12,7 @@ use crate::bodies::{Response, Surface, Twist};
 use crate::math::Vector64;
 
 /// One point of a contact.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Point {
     /// Recognises the point in the next substep.
     pub feature: u32,
@@ -36,7 +36,7 @@ pub(super) struct Point {
 }
 
 /// Who touches, and how their surfaces rub and rebound.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Touching {
     pub pair: u32,
     pub a: u32,
@@ -50,7 +50,7 @@ pub(super) struct Touching {
 }
 
 /// What stays the same within a substep.
-#[derive(Clone, Copy, Debug, Default)]
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 struct Gains {
     /// Response of the split masses along the normal [1/kg].
     normal: Coupling,
@@ -64,7 +64,7 @@ struct Gains {
 }
 
 /// One or two points of two bodies with a common normal.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Contact {
     pub who: Touching,
     /// Unit normal, towards the first body.

@@ -37,7 +37,7 @@ use pieces::NONE;
 use sleep::Islands;
 
 /// How contacts are solved.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ContactSettings {
     /// Contacts that share a body count this much less: over-relaxation of the split Jacobi sweep, below 2.
     /// With an odd number of iterations in a substep warm starting is stable only up to 4/3 (one) or 1.69 (three).
@@ -63,7 +63,7 @@ impl Default for ContactSettings {
 
 /// How overlap is taken out of positions. Gently where it is small: lifting at once what an impact has
 /// pressed in feeds rocking stacks with energy. Swiftly where bodies started inside each other.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Depenetration {
     /// Overlap that is left alone, over the size of the smaller body.
     pub slop: f64,
@@ -84,7 +84,7 @@ impl Default for Depenetration {
 }
 
 /// The contacts and joints of all bodies: solver state that lasts from substep to substep.
-#[derive(Clone)]
+#[derive(Clone, serde::Serialize, serde::Deserialize)]
 pub struct Contacts {
     settings: ContactSettings,
     finder: Finder,

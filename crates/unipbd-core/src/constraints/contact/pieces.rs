@@ -8,7 +8,7 @@ use crate::shapes::{Boundary, Core, Shape, Wall};
 pub(super) const NONE: u32 = u32::MAX;
 
 /// An axis-aligned box.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) struct Bounds {
     pub low: Vector64,
     pub high: Vector64,
@@ -37,7 +37,7 @@ impl Bounds {
 }
 
 /// What a piece belongs to, and where its vertices lie.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Piece {
     /// Its body, or [`NONE`].
     pub body: u32,
@@ -54,7 +54,7 @@ pub(super) struct Piece {
 }
 
 /// A wall without end.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct HalfPlane {
     pub wall: u32,
     pub point: Vector64,
@@ -84,14 +84,14 @@ impl PieceView<'_> {
     }
 }
 
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, serde::Serialize, serde::Deserialize)]
 struct Vertex {
     place: Vector64,
     normal: Vector64,
 }
 
 /// The convex pieces of all walls and bodies: those of walls first, then body by body.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Pieces {
     pub all: Vec<Piece>,
     pub bounds: Vec<Bounds>,

@@ -7,7 +7,7 @@ use super::pieces::NONE;
 use crate::bodies::Bodies;
 
 /// When bodies fall asleep.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SleepSettings {
     /// Speed of the fastest point of a body, |v| + |w| R, below which it counts as at rest [m/s].
     pub speed: f64,
@@ -22,7 +22,7 @@ impl Default for SleepSettings {
 }
 
 /// Rest times of bodies, and which bodies fell asleep together.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Islands {
     /// How long each body has been at rest [s].
     rest: Vec<f64>,

@@ -3,13 +3,17 @@
 //! One file per kind of thing; each lists only causes, never what follows from them: a comparison
 //! with a value that is itself at fault is left out.
 
+mod bodies;
 mod checker;
 mod environment;
 mod finite;
 mod geometry;
+mod joints;
 mod materials;
+mod motion;
 mod overlap;
 mod placement;
+mod regions;
 mod settings;
 mod size;
 mod sources;
@@ -29,6 +33,9 @@ impl Scene {
         materials::check(&mut checker);
         sources::check(&mut checker);
         walls::check(&mut checker);
+        bodies::check(&mut checker);
+        joints::check(&mut checker);
+        regions::check(&mut checker);
         size::check(&mut checker);
         if checker.size_is_sane {
             overlap::check(&mut checker);

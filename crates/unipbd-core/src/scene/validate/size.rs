@@ -105,6 +105,9 @@ fn points(scene: &Scene) -> Vec<(KeyPath, [f64; 2])> {
         add("obstacle", index, "min", obstacle.min);
         add("obstacle", index, "max", obstacle.max);
     }
+    for (index, body) in scene.body.iter().enumerate() {
+        add("body", index, "position", body.position);
+    }
     let domain = &scene.domain;
     let extents = [("periodic_x", domain.periodic_x), ("periodic_y", domain.periodic_y)];
     let given = extents.into_iter().filter_map(|(key, extent)| Some((KeyPath::key("domain").then(key), extent?)));

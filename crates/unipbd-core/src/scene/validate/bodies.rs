@@ -1,0 +1,154 @@
+//! Bodies by themselves: outline, mass, surface, layers, copies.
+
+use std::collections::BTreeMap;
+
+use super::checker::{Allowed, Checker, number};
+use super::materials::excerpt;
+use super::motion;
+use crate::bodies::BodyKind;
+use crate::build::{body_copies, body_shape};
+use crate::scene::{BodyDescription, KeyPath, Side, Tank};
+
+/// More bodies than this are refused.
+const MOST_BODIES: f64 = 200_000.0;
+const COEFFICIENT_HINT: &str = "a Coulomb coefficient, such as 0.5; 0 is slippery";
+
+pub(super) fn check(checker: &mut Checker) {
+    let mut names = BTreeMap::new();
+    let mut total = 0.0;
+    for (index, body) in checker.scene.body.iter().enumerate() {
+        let path = KeyPath::entry("body", index);
+        if let Some(first) = (!body.name.is_empty()).then(|| names.insert(&body.name, index)).flatten() {
+            let message = format!("the name \"{}\" is taken by body[{first}]", excerpt(&body.name));
+            checker.problem(path.then("name"), message, "names of bodies must differ");
+        }
+        let sound = check_outline(checker, &path, body);
+        check_mass(checker, &path, body);
+        check_surface(checker, &path, body);
+        check_layers(checker, &path, body);
+        motion::check(checker, &path, body);
+        if check_copies(checker, &path, body, &mut total) && sound {
+            check_place(checker, &path, body);
+        }
+    }
+}
+
+/// Exactly one outline, and one that has an area.
+fn check_outline(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) -> bool {
+    let given = [("radius", body.radius.is_some()), ("size", body.size.is_some()), ("outline", body.outline.is_some())];
+    let keys: Vec<&str> = given.iter().filter(|(_, given)| *given).map(|(key, _)| *key).collect();
+    match keys[..] {
+        [] => {
+            let hint = "give one of radius (a disc), size (a box) and outline (a polygon)";
+            checker.problem(path.clone(), "the body has no shape", hint);
+            false
+        }
+        [key] => check_shape(checker, path.then(key), body),
+        [first, second, ..] => {
+            let message = format!("the body has two shapes: `{first}` and `{second}`");
+            checker.problem(path.then(second), message, "keep one of radius, size and outline");
+            false
+        }
+    }
+}
+
+fn check_shape(checker: &mut Checker, path: KeyPath, body: &BodyDescription) -> bool {
+    if let Some(size) = body.size {
+        let mut sound = true;
+        for (axis, length) in size.into_iter().enumerate() {
+            sound &= checker.range(path.then_index(axis), length, Allowed::Positive, "width and height in metres");
+        }
+        return sound;
+    }
+    if let Some(radius) = body.radius {
+        return checker.range(path, radius, Allowed::Positive, "a length in metres");
+    }
+    match body_shape(body).check() {
+        Ok(()) => true,
+        Err(error) => {
+            let hint = "list the corners in order around the outline, without crossing it";
+            checker.problem(path, error.to_string(), hint);
+            false
+        }
+    }
+}
+
+fn check_mass(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {
+    checker.range(path.then("density"), body.density, Allowed::Positive, "mass per area in kg/m^2; 1000 is water");
+    if let Some(mass) = body.mass {
+        checker.range(path.then("mass"), mass, Allowed::Positive, "in kg; left out, it follows from the density");
+    }
+}
+
+fn check_surface(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {
+    checker.range(path.then("friction"), body.friction, Allowed::NotNegative, COEFFICIENT_HINT);
+    if let Some(kinetic) = body.kinetic_friction
+        && checker.range(path.then("kinetic_friction"), kinetic, Allowed::NotNegative, COEFFICIENT_HINT)
+        && kinetic > body.friction
+    {
+        let message = format!("must not exceed the friction at rest ({}), found {}", body.friction, number(kinetic));
+        checker.problem(path.then("kinetic_friction"), message, "lower it or raise `friction`");
+    }
+    let hint = "a moment over (normal force x radius), such as 0.05";
+    checker.range(path.then("rolling_friction"), body.rolling_friction, Allowed::NotNegative, hint);
+    let hint = "rebound speed over impact speed: 0 stays, 1 bounces back as fast";
+    checker.range(path.then("restitution"), body.restitution, Allowed::Between(0.0, 1.0), hint);
+}
+
+fn check_layers(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {
+    let lists = [("layers", Some(&body.layers)), ("collides_with", body.collides_with.as_ref())];
+    for (key, list) in lists.into_iter().filter_map(|(key, list)| Some((key, list?))) {
+        for (index, &layer) in list.iter().enumerate() {
+            let path = path.then(key).then_index(index);
+            checker.range(path, f64::from(layer), Allowed::Between(0.0, 31.0), "there are 32 layers");
+        }
+    }
+}
+
+fn check_copies(checker: &mut Checker, path: &KeyPath, body: &BodyDescription, total: &mut f64) -> bool {
+    let Some(copies) = &body.copies else {
+        *total += 1.0;
+        return true;
+    };
+    let path = path.then("copies");
+    let mut sound = true;
+    for (key, count) in [("columns", copies.columns), ("rows", copies.rows)] {
+        sound &= checker.range(path.then(key), f64::from(count), Allowed::Between(1.0, 1e5), "a whole number from 1");
+    }
+    let count = f64::from(copies.columns) * f64::from(copies.rows);
+    *total += count;
+    if sound && *total > MOST_BODIES {
+        let message = format!("brings the scene to {} bodies; the limit is {}", number(*total), number(MOST_BODIES));
+        checker.problem(path.clone(), message, "lower `columns` or `rows`");
+        sound = false;
+    }
+    let needed = [copies.columns > 1, copies.rows > 1];
+    if sound && needed.into_iter().zip(copies.step).any(|(needed, step)| needed && step == 0.0) {
+        checker.problem(path.then("step"), "puts bodies in the same place", "the way from body to body in metres");
+        sound = false;
+    }
+    sound
+}
+
+/// Dynamic bodies start inside a tank, where there are tanks.
+fn check_place(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {
+    let tanks = &checker.scene.tank;
+    if body.kind != BodyKind::Dynamic || tanks.is_empty() {
+        return;
+    }
+    let places = body_copies(body);
+    let outside = |place: &&[f64; 2]| !tanks.iter().any(|tank| holds(tank, **place));
+    if let Some([x, y]) = places.iter().find(outside) {
+        let which = if body.copies.is_some() { "a copy of the body" } else { "the body" };
+        let message = format!("{which} starts outside every tank, at [{}, {}]", number(*x), number(*y));
+        checker.problem(path.then("position"), message, "move it inside, or open that side of the tank");
+    }
+}
+
+fn holds(tank: &Tank, [x, y]: [f64; 2]) -> bool {
+    let closed = |side| !tank.open.contains(&side);
+    !(closed(Side::Left) && x < tank.min[0]
+        || closed(Side::Right) && x > tank.max[0]
+        || closed(Side::Bottom) && y < tank.min[1]
+        || closed(Side::Top) && y > tank.max[1])
+}

@@ -1,0 +1,64 @@
+//! Joints, and the names of bodies they refer to.
+
+use super::checker::{Allowed, Checker};
+use super::materials::excerpt;
+use crate::build::body_names;
+use crate::scene::{JointDescription, JointRule, KeyPath, nearest};
+
+pub(super) fn check(checker: &mut Checker) {
+    if checker.scene.joint.is_empty() {
+        return;
+    }
+    let names = body_names(checker.scene);
+    for (index, joint) in checker.scene.joint.iter().enumerate() {
+        let path = KeyPath::entry("joint", index);
+        check_body(checker, path.then("body"), &joint.body, &names);
+        if let Some(other) = &joint.other {
+            check_body(checker, path.then("other"), other, &names);
+            if *other == joint.body {
+                checker.problem(
+                    path.then("other"),
+                    "joins a body to itself",
+                    "leave it out for a joint with the world",
+                );
+            }
+        }
+        check_values(checker, &path, joint);
+    }
+}
+
+fn check_body(checker: &mut Checker, path: KeyPath, name: &str, names: &[String]) {
+    if names.iter().any(|known| known == name) {
+        return;
+    }
+    let hint = match nearest(name, names.iter().map(String::as_str)) {
+        Some(near) => format!("did you mean \"{near}\"?"),
+        None if names.is_empty() => "the scene has no [[body]]".to_owned(),
+        None => format!("the bodies are {}", list(names)),
+    };
+    checker.problem(path, format!("there is no body \"{}\"", excerpt(name)), hint);
+}
+
+fn list(names: &[String]) -> String {
+    let shown: Vec<String> = names.iter().take(8).map(|name| format!("\"{}\"", excerpt(name))).collect();
+    shown.join(", ") + if names.len() > shown.len() { ", ..." } else { "" }
+}
+
+fn check_values(checker: &mut Checker, path: &KeyPath, joint: &JointDescription) {
+    checker.range(path.then("compliance"), joint.compliance, Allowed::NotNegative, "in m/N; 0 is rigid");
+    checker.range(path.then("motor_torque"), joint.motor_torque, Allowed::Positive, "in N m; left out, no limit");
+    if let Some(length) = joint.length {
+        checker.range(path.then("length"), length, Allowed::Positive, "in metres; left out, as the scene starts");
+    }
+    if joint.kind == JointRule::Hinge {
+        let apart = joint.other_at.is_some_and(|other| other != joint.at);
+        let given = [("length", joint.length.is_some()), ("other_at", apart), ("compliance", joint.compliance != 0.0)];
+        for (key, _) in given.into_iter().filter(|(_, given)| *given) {
+            let hint = "leave it out, or make the joint a \"rod\" or a \"rope\"";
+            checker.problem(path.then(key), format!("a hinge has no `{key}`"), hint);
+        }
+    } else if joint.motor_speed_deg.is_some() {
+        let hint = "make the joint a \"hinge\", or leave it out";
+        checker.problem(path.then("motor_speed_deg"), "only a hinge has a motor", hint);
+    }
+}

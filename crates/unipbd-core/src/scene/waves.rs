@@ -1,0 +1,24 @@
+use serde::{Deserialize, Serialize};
+
+/// A wave that displaces all particles of blocks and discs at the start, without changing their
+/// density: the displacement field of the potential-flow mode cos(2 pi x/wavelength + phase).
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(deny_unknown_fields)]
+pub struct Wave {
+    /// Height of the surface or interface that becomes wavy [m].
+    pub level: f64,
+    /// Amplitude there [m].
+    pub amplitude: f64,
+    /// Wavelength [m].
+    pub wavelength: f64,
+    /// Phase at x = 0 [degrees]; between walls it must be 0 or 180, and the walls half a wavelength apart or more.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub phase_deg: Option<f64>,
+    /// Height of the floor, where nothing moves up or down; left out, far below [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bottom: Option<f64>,
+    /// Height of the lid; left out, far above [m].
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub top: Option<f64>,
+}

@@ -1,0 +1,85 @@
+"""Rigid bodies by name."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import unipbd as up
+
+
+@pytest.fixture
+def pond() -> up.Scene:
+    """A raft that is dropped a little onto a pool."""
+    scene = up.Scene(spacing=0.06)
+    scene.add_liquid("water")
+    scene.add_block("water", min=(0, 0), max=(2.4, 0.6))
+    scene.add_tank(min=(0, 0), max=(2.4, 2))
+    outline = [(-0.3, -0.1), (0.3, -0.1), (0.3, 0.1), (-0.3, 0.1)]
+    scene.add_body("raft", outline=outline, density=400, at=(1.2, 0.75))
+    return scene
+
+
+def test_a_raft_floats_on_the_force_of_the_fluid(pond: up.Scene) -> None:
+    sim = pond.build(seed=1)
+    raft = sim.bodies["raft"]
+    assert raft.kind == "dynamic" and raft.mass == pytest.approx(400 * 0.6 * 0.2)
+    np.testing.assert_allclose(raft.position, (1.2, 0.75), atol=1e-9)
+    assert raft.outline.shape == (4, 2)
+    lifts = []
+    for frame in sim.run(until=4.0):
+        if frame.time > 3.0:
+            lifts.append(raft.fluid_force[1])
+    assert np.mean(lifts) == pytest.approx(raft.mass * 9.81, rel=0.1)
+    assert 0.5 < raft.position[1] < 0.75 and abs(raft.angle) < 0.3
+    assert raft.velocity.shape == raft.contact_force.shape == (2,)
+    assert np.isfinite([raft.angular_velocity, raft.fluid_torque, raft.contact_torque, raft.inertia]).all()
+    assert sim.diagnostics()["counts"]["rigid"] == np.count_nonzero(sim.phases == up.RIGID) > 20
+    with pytest.raises(KeyError):
+        sim.bodies["boat"]
+
+
+def test_bodies_are_pushed_in_an_edit(pond: up.Scene) -> None:
+    sim = pond.build(seed=1)
+    sim.step(5)
+    with sim.edit() as e:
+        e.velocities[:] = 0
+        e.bodies["raft"].velocity = (0.5, 0.0)
+        e.bodies["raft"].angular_velocity = -1.0
+    assert sim.bodies["raft"].velocity.tolist() == [0.5, 0.0]
+    assert sim.bodies["raft"].angular_velocity == -1.0
+    sample = sim.ids[sim.phases == up.RIGID][0]
+    hash_before = sim.state_hash()
+    for fault in ("velocity", "sample"):
+        with pytest.raises(up.EditError), sim.edit() as e:
+            if fault == "velocity":
+                e.bodies["raft"].velocity = (np.nan, 0)
+            else:
+                e.remove([sample])
+    assert sim.state_hash() == hash_before
+
+
+def test_states_and_logs_hold_bodies(pond: up.Scene, tmp_path) -> None:  # type: ignore[no-untyped-def]
+    sim = pond.build(seed=1)
+    with sim.record(tmp_path / "run.mcap"):
+        sim.step(20)
+    saved, place = sim.state(), sim.bodies["raft"].position
+    frames = list(up.read_log(tmp_path / "run.mcap"))
+    np.testing.assert_allclose(frames[-1].bodies["raft"]["position"], place, atol=1e-6)
+    sim.step(20)
+    expected = sim.state_hash()
+    other = sim.copy()
+    other.restore(up.State.from_bytes(saved.to_bytes()))
+    np.testing.assert_array_equal(other.bodies["raft"].position, place)
+    other.step(20)
+    assert other.state_hash() == expected
+
+
+def test_kinematic_bodies_follow_their_script(pond: up.Scene) -> None:
+    pond.bodies["raft"].kind = "kinematic"
+    pond.bodies["raft"].motion = {"velocity": [0.25, 0.0]}
+    sim = pond.build(seed=1)
+    sim.step(60)
+    np.testing.assert_allclose(sim.bodies["raft"].position, (1.45, 0.75), atol=1e-6)
+    with pytest.raises(up.EditError, match="not dynamic"), sim.edit() as e:
+        e.bodies["raft"].velocity = (1, 0)
