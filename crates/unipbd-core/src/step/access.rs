@@ -87,7 +87,7 @@ impl Solver {
     /// Pressure over density by row, from the multipliers of the last substep: lambda/(m dt^2) [m^2/s^2].
     pub fn pressures(&self) -> Vec<f64> {
         let (particles, dt) = (self.particles(), self.world.clock.dt);
-        let inverse = if dt > 0.0 { 1.0 / (dt * dt) } else { 0.0 };
+        let inverse = if dt > 0.0 { self.world.parts.pressure_scale / (dt * dt) } else { 0.0 };
         let pressure = |row: usize| f64::from(particles.multiplier[row] * particles.inverse_mass[row]) * inverse;
         (0..particles.len()).map(pressure).collect()
     }
