@@ -64,6 +64,7 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     let periodic = periodic(scene);
     let settings = DensitySettings::new(scene);
     let effects = effects(scene, seed);
+    let pressure_scale = f64::from(settings.volume) * settings.moment;
     let cover = match settings.gradients {
         GradientPoint::Start | GradientPoint::Middle => Cover::StartAndPredicted,
         GradientPoint::Predicted => Cover::Predicted,
@@ -92,6 +93,7 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         substeps: SubstepRule::new(scene),
         iterations: scene.solver.iterations,
         tolerance: scene.solver.tolerance,
+        pressure_scale,
         gravity: vector(scene.gravity.into()),
         spacing: scene.spacing,
         frame_time: 1.0 / scene.fps,

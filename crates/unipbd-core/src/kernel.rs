@@ -79,6 +79,7 @@ impl Kernel {
                 let gradient = f64::from(self.slope(real(r))) * r;
                 sums.value += f64::from(self.value(real(r)));
                 sums.gradient_squared += gradient * gradient;
+                sums.moment -= 0.5 * gradient * r;
             }
         }
         sums
@@ -92,6 +93,8 @@ pub struct LatticeSums {
     pub value: f64,
     /// sum of |grad W|^2 [1/m^6].
     pub gradient_squared: f64,
+    /// -sum of y dW/dy [1/m^2]: times the volume, what the gradient of a linear field comes out as.
+    pub moment: f64,
 }
 
 #[cfg(test)]

@@ -3,9 +3,8 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
-use unipbd_core::bodies::BodyKind;
 use unipbd_core::scene::{
-    Block, BodyDescription, Gas, Liquid, RotationRule, Scene, Smoke, SolverSettings, Substeps, Tank,
+    Block, BodyDescription, Emitter, Gas, Liquid, Profile, Scene, Smoke, SmokeSource, SolverSettings, Substeps, Tank,
 };
 use unipbd_core::{BuildOptions, Solver};
 
@@ -67,29 +66,7 @@ fn pool() -> Scene {
 }
 
 fn floating_box(x: f64) -> BodyDescription {
-    BodyDescription {
-        name: String::new(),
-        kind: BodyKind::Dynamic,
-        radius: None,
-        size: Some([0.6, 0.6]),
-        outline: None,
-        position: [x, 2.4],
-        angle_deg: 0.0,
-        velocity: [0.0; 2],
-        spin_deg: 0.0,
-        density: 500.0,
-        mass: None,
-        friction: 0.5,
-        kinetic_friction: None,
-        rolling_friction: 0.0,
-        restitution: 0.0,
-        layers: vec![0],
-        collides_with: None,
-        rotation: RotationRule::default(),
-        gravity_factor: 1.0,
-        motion: None,
-        copies: None,
-    }
+    BodyDescription { density: 500.0, ..BodyDescription::rectangle([0.6, 0.6], [x, 2.4]) }
 }
 
 #[test]
@@ -138,66 +115,6 @@ fn gas_with_smoke_steps_without_allocating() {
     assert_eq!(allocations(&scene, 120, 20), 0);
 }
 
-fn floating_box(x: f64) -> BodyDescription {
-    BodyDescription {
-        name: String::new(),
-        kind: BodyKind::Dynamic,
-        radius: None,
-        size: Some([0.6, 0.6]),
-        outline: None,
-        position: [x, 2.4],
-        angle_deg: 0.0,
-        velocity: [0.0; 2],
-        spin_deg: 0.0,
-        density: 500.0,
-        mass: None,
-        friction: 0.5,
-        kinetic_friction: None,
-        rolling_friction: 0.0,
-        restitution: 0.0,
-        layers: vec![0],
-        collides_with: None,
-        rotation: RotationRule::default(),
-        gravity_factor: 1.0,
-        motion: None,
-        copies: None,
-    }
-}
-
-#[test]
-fn a_pool_steps_without_allocating() {
-    assert_eq!(allocations(&pool(), 60, 20), 0);
-}
-
-#[test]
-fn gas_with_smoke_steps_without_allocating() {
-    let gas = Gas {
-        name: "air".into(),
-        density: 1.2,
-        gravity_factor: -0.1,
-        drag: 10.0,
-        vorticity: 1.0,
-        conductivity: 0.001,
-        viscosity: 0.01,
-        keep_radius: Some(20.0),
-        lifetime: Some(50.0),
-        ..Gas::default()
-    };
-    let scene = Scene {
-        gas: vec![gas],
-        smoke: vec![Smoke::new("smoke")],
-        block: vec![
-            Block { temperature: 1.0, ..Block::new("air", [0.0, 0.0], [3.0, 3.0]) },
-            Block::new("smoke", [1.0, 0.5], [2.0, 1.5]),
-        ],
-        tank: vec![Tank { open: vec![], ..Tank::new([0.0, 0.0], [3.0, 3.0]) }],
-        solver: fixed(4),
-        ..Scene::default()
-    };
-    assert_eq!(allocations(&scene, 60, 20), 0);
-}
-
-/// The search for contacts takes one small table a substep, the islands of sleepers two a frame.
 #[test]
 fn floating_bodies_allocate_no_more_than_once_a_substep() {
     let scene = Scene { body: vec![floating_box(0.8), floating_box(2.2)], ..pool() };

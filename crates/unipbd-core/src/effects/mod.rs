@@ -16,10 +16,10 @@ pub use cohesion::Cohesion;
 pub use conduction::Conduction;
 pub use confinement::VorticityConfinement;
 pub use drag::Drag;
-pub use smoke::{Advected, SmokeAdvection};
 pub use heating::Heating;
 pub use quadratic_drag::QuadraticDrag;
 pub use shear_viscosity::ShearViscosity;
+pub use smoke::{Advected, SmokeAdvection};
 pub use viscosity::Viscosity;
 pub use wind::Wind;
 

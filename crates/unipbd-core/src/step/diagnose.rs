@@ -169,6 +169,6 @@ impl World {
         let particles = &self.parts.particles;
         let pressure = |row: usize| particles.multiplier[row] * particles.inverse_mass[row];
         let largest = self.parts.parallelism.max(particles.dense(), pressure);
-        f64::from(largest.max(0.0)) / (self.clock.dt * self.clock.dt)
+        self.parts.pressure_scale * f64::from(largest.max(0.0)) / (self.clock.dt * self.clock.dt)
     }
 }

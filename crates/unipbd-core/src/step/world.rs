@@ -9,7 +9,7 @@ use super::timings::Timings;
 use super::{FrameReport, SolverError, Stage};
 use crate::constraints::{ConstraintGroup, Corrections, Needs, Substep};
 use crate::effects::{Changes, Effect, SmokeAdvection};
-use crate::math::{Real, Vector, wide};
+use crate::math::{Real, Vector, Vector64, wide};
 use crate::neighbors::{Cover, Neighbors, SavedList};
 use crate::observe::{Event, Material, Severity};
 use crate::parallel::Parallelism;
@@ -38,6 +38,9 @@ pub(crate) struct Parts {
     pub iterations: u32,
     /// Violation of every group at which the iteration stops.
     pub tolerance: f64,
+    /// Pressure over density per multiplier, inverse mass and squared substep: the gradient of the
+    /// rest lattice falls a little short, and the multipliers are as much too large.
+    pub pressure_scale: f64,
     pub gravity: Vector,
     pub spacing: f64,
     pub frame_time: f64,
@@ -47,6 +50,9 @@ pub(crate) struct Parts {
 
 /// Pressures up to this many times what depth and speed account for are believed.
 const PRESSURE_MARGIN: f64 = 8.0;
+/// The pressure of the multipliers decides the number of substeps only where it is this many times the
+/// expected one: they rise when the number changes, and must not change it in turn.
+const UNEXPECTED: f64 = 1.5;
 /// Speed, in spacings per frame, that a compressed liquid may always reach.
 const LEAST_SPEED: f64 = 2.0;
 
@@ -300,7 +306,8 @@ impl World {
         let emitted = parts.emitters.as_ref().map_or(0.0, |emitters| emitters.speed_max(self.clock.time));
         let moving = if self.clock.step == 0 { self.fastest() } else { self.clock.speed };
         let chain = parts.rigid.as_ref().map_or(0.0, |rigid| rigid.support_chain(wide(parts.gravity)));
-        Demand { speed: moving.max(emitted), chain, pressure: self.depth_pressure().max(self.multiplier_pressure()) }
+        let expected = self.depth_pressure().max(self.dynamic_pressure());
+        Demand { speed: moving.max(emitted), chain, pressure: expected.max(self.multiplier_pressure() / UNEXPECTED) }
     }
 
     fn fastest(&self) -> f64 {
@@ -354,6 +361,21 @@ impl World {
         let dynamic = 0.5 * (sum / count.max(1.0)).sqrt();
         let least = LEAST_SPEED * self.parts.spacing / self.parts.frame_time;
         PRESSURE_MARGIN * (self.depth_pressure() + dynamic) + least * least
+    }
+
+    /// Pressure over density that the motion of the liquids within themselves can bring about
+    /// [m^2/s^2]: the square of their speed relative to the mean one, as the fourth root of its mean
+    /// fourth power.
+    fn dynamic_pressure(&self) -> f64 {
+        let velocities = &self.parts.particles.velocity;
+        let (x, count) = self.over_liquids(|row| f64::from(velocities[row].x));
+        let (y, _) = self.over_liquids(|row| f64::from(velocities[row].y));
+        let mean = Vector64::new(x, y) / count.max(1.0);
+        let (sum, count) = self.over_liquids(|row| {
+            let square = (wide(velocities[row]) - mean).length_squared();
+            square * square
+        });
+        (sum / count.max(1.0)).sqrt()
     }
 
     /// Sum of a value over the liquid particles, and their number.

@@ -14,6 +14,8 @@ pub struct DensitySettings {
     pub spacing: f64,
     /// What one neighbour counts: its volume, scaled so that the rest lattice reads 1 [m^2].
     pub volume: Real,
+    /// -sum of y dW/dy over the rest lattice [1/m^2].
+    pub moment: f64,
     /// Where gradients are taken.
     pub gradients: GradientPoint,
     /// The inverse mass of all dense particles, where they have but one [1/kg].
@@ -37,6 +39,8 @@ pub struct DensityMaterial {
     pub gate: Real,
     /// Floor of the denominator [1/(kg m^2)]: keeps thin places from being thrown about.
     pub response_min: Real,
+    /// Mass of a particle whose pressure is limited [kg]; 0 where it is not.
+    pub limited_mass: Real,
     /// Added to the denominator: constraint force mixing [1/(kg m^2)].
     pub mixing: Real,
     /// The same for particles moved by a script, whose own response is missing from the denominator: what
@@ -84,6 +88,7 @@ impl DensitySettings {
             kernel_radius: radius,
             spacing: scene.spacing,
             volume: real(volume),
+            moment: sums.moment,
             gradients: scene.solver.gradients.unwrap_or(default_gradients),
             uniform_inverse_mass: uniform_mass(scene).map(|mass| real(1.0 / mass)),
             artificial_pressure: real(scene.solver.artificial_pressure * scene.spacing * scene.spacing),
@@ -110,10 +115,12 @@ impl DensityMaterial {
                 response_min: real(GAS_RESPONSE_FLOOR * rest_response / mass),
                 scripted_response_min: real(SCRIPTED_RESPONSE_FLOOR * rest_response / mass),
                 mixing,
+                limited_mass: real(mass),
                 repulsion: real((GAS_REPULSION * lightest).sqrt()),
             },
             Phase::Liquid => DensityMaterial {
                 mixing,
+                limited_mass: real(mass),
                 relaxation: relaxation(LIQUID_RELAXATION),
                 multiplier_min: 0.0,
                 gate: Real::NEG_INFINITY,
@@ -123,6 +130,7 @@ impl DensityMaterial {
             },
             Phase::Gas => DensityMaterial {
                 mixing,
+                limited_mass: 0.0,
                 relaxation: relaxation(GAS_RELAXATION),
                 multiplier_min: Real::NEG_INFINITY,
                 gate: real(GAS_GATE),
@@ -132,6 +140,7 @@ impl DensityMaterial {
             },
             Phase::Smoke | Phase::Rigid | Phase::Solid => DensityMaterial {
                 mixing: 0.0,
+                limited_mass: 0.0,
                 relaxation: 0.0,
                 multiplier_min: 0.0,
                 gate: Real::NEG_INFINITY,

@@ -235,6 +235,6 @@ impl DensityMaterial {
         let floor = if inverse_mass == 0.0 { self.scripted_response_min } else { self.response_min };
         let new = (old + self.relaxation * error / (response.max(floor) + self.mixing)).max(least);
         // What is squeezed in with no way out must not push harder the shorter the substep is.
-        if self.multiplier_min == 0.0 && inverse_mass > 0.0 { new.min(limit / inverse_mass) } else { new }
+        if self.limited_mass > 0.0 { new.clamp(-limit * self.limited_mass, limit * self.limited_mass) } else { new }
     }
 }
