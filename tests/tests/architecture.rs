@@ -7,9 +7,10 @@ use unipbd_tests::repository;
 
 /// The modules of the core in layers, the lowest first. A module may import from its own layer and
 /// from those below it.
-const LAYERS: [&[&str]; 12] = [
+const LAYERS: [&[&str]; 13] = [
     &["math"],
-    &["bytes", "phase", "rng", "parallel"],
+    &["phase", "rng", "parallel"],
+    &["bytes"],
     &["particles", "rows", "bodies", "shapes"],
     &["observe", "scene"],
     &["neighbors", "simd"],
