@@ -9,7 +9,7 @@ use unipbd_tests::repository;
 /// from those below it.
 const LAYERS: [&[&str]; 12] = [
     &["math"],
-    &["phase", "rng", "parallel"],
+    &["bytes", "phase", "rng", "parallel"],
     &["particles", "rows", "bodies", "shapes"],
     &["observe", "scene"],
     &["neighbors", "simd"],
@@ -18,7 +18,7 @@ const LAYERS: [&[&str]; 12] = [
     &["constraints"],
     &["effects", "sources", "rigid"],
     &["step"],
-    &["build", "state", "edit"],
+    &["build", "expect", "state", "edit"],
     &["lib"],
 ];
 

@@ -26,11 +26,30 @@ min = [0.0, 0.0]
 max = [1.0, 1.0]
 "#;
 
+const GRAINS: &str = r#"
+[[solid]]
+name = "grain"
+[[points]]
+material = "grain"
+positions = [[0.0, 1.0], [0.5, 1.0], [1.0, 1.5]]
+"#;
+
 const BALL: &str = r#"
 [[body]]
 radius = 0.3
 position = [0.5, 2.0]
 "#;
+
+#[test]
+fn free_flight_has_two_stages() {
+    assert_stages(GRAINS, &[Predict, UpdateVelocities]);
+}
+
+#[test]
+fn grains_between_walls_are_projected_without_neighbours() {
+    let walled = format!("{GRAINS}[[half_plane]]\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n");
+    assert_stages(&walled, &[Predict, Project, UpdateVelocities]);
+}
 
 #[test]
 fn water_has_neighbours_and_one_projection() {

@@ -4,10 +4,11 @@ mod bodies;
 mod carve;
 mod waves;
 
-pub(crate) use bodies::{body_copies, body_names, shape as body_shape};
-
 use crate::constraints::{ConstraintGroup, Density, DensitySettings};
-use crate::effects::{Conduction, Drag, Effect, Heating, SmokeAdvection, Viscosity, VorticityConfinement};
+use crate::effects::{
+    Cohesion, Conduction, Drag, Effect, Heating, QuadraticDrag, ShearViscosity, SmokeAdvection, Viscosity,
+    VorticityConfinement,
+};
 use crate::math::{Vector, Vector64, real, vector};
 use crate::neighbors::{Cover, Neighbors, Periodic, PeriodicAxis};
 use crate::observe::Material;
@@ -63,8 +64,9 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     let periodic = periodic(scene);
     let settings = DensitySettings::new(scene);
     let effects = effects(scene, seed);
+    let pressure_scale = f64::from(settings.volume) * settings.moment;
     let cover = match settings.gradients {
-        GradientPoint::Start => Cover::StartAndPredicted,
+        GradientPoint::Start | GradientPoint::Middle => Cover::StartAndPredicted,
         GradientPoint::Predicted => Cover::Predicted,
     };
     let least_skin = if effects.is_empty() && scene.smoke.is_empty() { 0.0 } else { LEAST_SKIN * scene.spacing };
@@ -90,6 +92,8 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         removal,
         substeps: SubstepRule::new(scene),
         iterations: scene.solver.iterations,
+        tolerance: scene.solver.tolerance,
+        pressure_scale,
         gravity: vector(scene.gravity.into()),
         spacing: scene.spacing,
         frame_time: 1.0 / scene.fps,
@@ -111,8 +115,17 @@ fn effects(scene: &Scene, seed: u64) -> Vec<Box<dyn Effect>> {
     if let Some(viscosity) = Viscosity::new(scene) {
         effects.push(Box::new(viscosity));
     }
+    if let Some(viscosity) = ShearViscosity::new(scene) {
+        effects.push(Box::new(viscosity));
+    }
     if let Some(drag) = Drag::new(scene, Rng::new(seed, WIND_STREAM).state()) {
         effects.push(Box::new(drag));
+    }
+    if let Some(drag) = QuadraticDrag::new(scene, Rng::new(seed, WIND_STREAM).state()) {
+        effects.push(Box::new(drag));
+    }
+    if let Some(cohesion) = Cohesion::new(scene) {
+        effects.push(Box::new(cohesion));
     }
     if let Some(conduction) = Conduction::new(scene) {
         effects.push(Box::new(conduction));

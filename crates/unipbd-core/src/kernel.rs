@@ -1,22 +1,41 @@
-//! The smoothing kernel of a run: Wendland C2, for density and gradient alike.
+//! The smoothing kernel of a run: Wendland C2 for density and gradient alike, unless the scene names
+//! another one for its density.
 //!
 //! (Density by poly6 with the gradient of the spiky kernel, the pair of Müller et al. 2003, is
 //! inconsistent: a column at rest keeps boiling.)
 
 use crate::math::{Real, real};
-use crate::simd::{Shape, WendlandC2};
+use crate::scene::KernelKind;
+use crate::simd::{Alternative, CubicSpline, Mixed, Poly6, Shape, Spiky, WendlandC2};
 
 /// A kernel of radius h, for single pairs; passes over many pairs take its [`shape`](Kernel::shape).
 #[derive(Clone, Copy, Debug)]
 pub struct Kernel {
     radius: Real,
     shape: WendlandC2,
+    alternative: Option<Alternative>,
 }
 
 impl Kernel {
     /// The kernel that vanishes at distance `radius` [m].
     pub fn new(radius: f64) -> Self {
-        Kernel { radius: real(radius), shape: WendlandC2::new(radius) }
+        Kernel { radius: real(radius), shape: WendlandC2::new(radius), alternative: None }
+    }
+
+    /// The kernel of this kind.
+    pub fn of(kind: KernelKind, radius: f64) -> Self {
+        let pair = || Mixed { value: Poly6::new(radius), slope: Spiky::new(radius) };
+        let alternative = match kind {
+            KernelKind::WendlandC2 => None,
+            KernelKind::CubicSpline => Some(Alternative::CubicSpline(CubicSpline::new(radius))),
+            KernelKind::Poly6Spiky => Some(Alternative::Poly6Spiky(pair())),
+        };
+        Kernel { alternative, ..Kernel::new(radius) }
+    }
+
+    /// The formula where it is not Wendland C2.
+    pub fn alternative(&self) -> Option<Alternative> {
+        self.alternative
     }
 
     /// Radius h [m].
@@ -24,7 +43,7 @@ impl Kernel {
         self.radius
     }
 
-    /// The formula, for passes over pairs.
+    /// The formula of Wendland C2, for passes over pairs.
     pub fn shape(&self) -> WendlandC2 {
         self.shape
     }
@@ -32,13 +51,19 @@ impl Kernel {
     /// W at distance r [1/m^2].
     #[inline]
     pub fn value(&self, r: Real) -> Real {
-        self.shape.at(r * r).0 * self.shape.value_scale()
+        match &self.alternative {
+            None => self.shape.at(r * r).0 * self.shape.value_scale(),
+            Some(other) => other.at(r * r).0 * other.value_scale(),
+        }
     }
 
     /// g at distance r, where grad W = g x [1/m^4]; never positive.
     #[inline]
     pub fn slope(&self, r: Real) -> Real {
-        self.shape.at(r * r).1 * self.shape.slope_scale()
+        match &self.alternative {
+            None => self.shape.at(r * r).1 * self.shape.slope_scale(),
+            Some(other) => other.at(r * r).1 * other.slope_scale(),
+        }
     }
 
     /// Sums over the square lattice of this spacing around a particle, itself left out.
@@ -54,6 +79,7 @@ impl Kernel {
                 let gradient = f64::from(self.slope(real(r))) * r;
                 sums.value += f64::from(self.value(real(r)));
                 sums.gradient_squared += gradient * gradient;
+                sums.moment -= 0.5 * gradient * r;
             }
         }
         sums
@@ -67,6 +93,8 @@ pub struct LatticeSums {
     pub value: f64,
     /// sum of |grad W|^2 [1/m^6].
     pub gradient_squared: f64,
+    /// -sum of y dW/dy [1/m^2]: times the volume, what the gradient of a linear field comes out as.
+    pub moment: f64,
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use crate::math::Vector64;
 use crate::phase::Phase;
 
 /// The state of a run at one moment, in numbers. Computed when asked for, from the state alone.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Diagnostics {
     /// Simulated time [s].
     pub time: f64,
@@ -14,6 +14,10 @@ pub struct Diagnostics {
     pub step: u64,
     /// Substeps of the last frame.
     pub substeps: u32,
+    /// Substeps that the last frame asked for; more than it took where the cap bound.
+    pub substeps_wanted: u32,
+    /// What decided the number of substeps.
+    pub substeps_reason: SubstepReason,
     /// Constraint iterations of the last frame.
     pub iterations: u32,
     /// Neighbour lists built in the last frame.
@@ -38,6 +42,8 @@ pub struct Diagnostics {
     pub angular_momentum: f64,
     /// Largest particle speed [m/s].
     pub speed_max: f64,
+    /// Deepest overlap of bodies with each other and with walls [m].
+    pub contact_penetration: f64,
     /// Per material, in index order.
     pub materials: Vec<MaterialDiagnostics>,
     /// Per constraint group, in solving order.
@@ -53,6 +59,38 @@ impl Diagnostics {
     /// Number of all particles.
     pub fn particles(&self) -> u64 {
         self.count_by_phase.iter().sum()
+    }
+}
+
+/// What decided the number of substeps of a frame.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum SubstepReason {
+    /// The scene gives the number.
+    #[default]
+    Fixed,
+    /// The fastest particle or emitter (Courant-Friedrichs-Lewy).
+    Speed,
+    /// The pressure, so that no substep compresses by more than a fifth.
+    TrustRegion,
+    /// The pressure and the target of the scene for the largest compression.
+    Compression,
+    /// The height of stacked bodies.
+    Support,
+    /// Less would do now, but the number falls slowly.
+    Hysteresis,
+}
+
+impl SubstepReason {
+    /// The word for it in messages and logs.
+    pub const fn name(self) -> &'static str {
+        match self {
+            SubstepReason::Fixed => "fixed",
+            SubstepReason::Speed => "speed",
+            SubstepReason::TrustRegion => "trust_region",
+            SubstepReason::Compression => "compression",
+            SubstepReason::Support => "support",
+            SubstepReason::Hysteresis => "hysteresis",
+        }
     }
 }
 

@@ -22,6 +22,41 @@ pub enum Parallelism {
     Pool,
 }
 
+/// Loops over chunks of several columns of equal length.
+macro_rules! chunks_of_columns {
+    ($($(#[$doc:meta])* $name:ident($($column:ident: $type:ident),+))+) => {
+        impl Parallelism {$(
+            $(#[$doc])*
+            pub fn $name<$($type: Send),+>(
+                self,
+                $($column: &mut [$type],)+
+                work: impl Fn(usize, $(&mut [$type]),+) + Sync,
+            ) {
+                let rows = [$($column.len()),+];
+                assert!(rows.iter().all(|&r| r == rows[0]), "columns of one particle set have one length");
+                if self.pays(rows[0]) {
+                    let columns = ($($column.par_chunks_mut(CHUNK_ROWS),)+).into_par_iter().enumerate();
+                    columns.for_each(|(c, ($($column,)+))| work(c * CHUNK_ROWS, $($column),+));
+                } else {
+                    for first in (0..rows[0]).step_by(CHUNK_ROWS) {
+                        let chunk = first..rows[0].min(first + CHUNK_ROWS);
+                        work(first, $(&mut $column[chunk.clone()]),+);
+                    }
+                }
+            }
+        )+}
+    };
+}
+
+chunks_of_columns! {
+    /// As [`chunks`](Self::chunks), for two columns of equal length.
+    chunks2(a: A, b: B)
+    /// As [`chunks`](Self::chunks), for three columns of equal length.
+    chunks3(a: A, b: B, c: C)
+    /// As [`chunks`](Self::chunks), for four columns of equal length.
+    chunks4(a: A, b: B, c: C, d: D)
+}
+
 impl Parallelism {
     /// Whether a loop over `rows` is worth spreading over the pool.
     #[inline]
@@ -63,37 +98,6 @@ impl Parallelism {
             out.par_chunks_mut(CHUNK_ROWS).enumerate().for_each(|(c, chunk)| work(c * CHUNK_ROWS, chunk));
         } else {
             out.chunks_mut(CHUNK_ROWS).enumerate().for_each(|(c, chunk)| work(c * CHUNK_ROWS, chunk));
-        }
-    }
-
-    /// As [`chunks`](Self::chunks), for two columns of equal length.
-    pub fn chunks2<A: Send, B: Send>(self, a: &mut [A], b: &mut [B], work: impl Fn(usize, &mut [A], &mut [B]) + Sync) {
-        assert_eq!(a.len(), b.len(), "columns of one particle set have one length");
-        if self.pays(a.len()) {
-            let pairs = a.par_chunks_mut(CHUNK_ROWS).zip(b.par_chunks_mut(CHUNK_ROWS));
-            pairs.enumerate().for_each(|(c, (a, b))| work(c * CHUNK_ROWS, a, b));
-        } else {
-            let pairs = a.chunks_mut(CHUNK_ROWS).zip(b.chunks_mut(CHUNK_ROWS));
-            pairs.enumerate().for_each(|(c, (a, b))| work(c * CHUNK_ROWS, a, b));
-        }
-    }
-
-    /// As [`chunks`](Self::chunks), for three columns of equal length.
-    pub fn chunks3<A: Send, B: Send, C: Send>(
-        self,
-        a: &mut [A],
-        b: &mut [B],
-        c: &mut [C],
-        work: impl Fn(usize, &mut [A], &mut [B], &mut [C]) + Sync,
-    ) {
-        assert!(a.len() == b.len() && b.len() == c.len(), "columns of one particle set have one length");
-        if self.pays(a.len()) {
-            let columns =
-                a.par_chunks_mut(CHUNK_ROWS).zip(b.par_chunks_mut(CHUNK_ROWS)).zip(c.par_chunks_mut(CHUNK_ROWS));
-            columns.enumerate().for_each(|(k, ((a, b), c))| work(k * CHUNK_ROWS, a, b, c));
-        } else {
-            let columns = a.chunks_mut(CHUNK_ROWS).zip(b.chunks_mut(CHUNK_ROWS)).zip(c.chunks_mut(CHUNK_ROWS));
-            columns.enumerate().for_each(|(k, ((a, b), c))| work(k * CHUNK_ROWS, a, b, c));
         }
     }
 

@@ -4,4 +4,4 @@ mod coverage;
 mod geometry;
 
 pub use coverage::Coverage;
-pub use geometry::{Hit, Walls};
+pub use geometry::{Hit, Shear, Walls};

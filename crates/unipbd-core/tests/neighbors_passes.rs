@@ -5,7 +5,7 @@ use unipbd_core::neighbors::{Grid, NeighborList, Periodic, PeriodicAxis};
 use unipbd_core::parallel::Parallelism;
 use unipbd_core::simd::{
     CubicSpline, DensityInput, DensityOutput, Level, Mixed, Pairs, Poly6, Shape, Spiky, Weights, WendlandC2,
-    correction, density, difference_gradient, laplacian, repulsion, vorticity, xsph,
+    correction, density, difference_gradient, laplacian, repulsion, vorticity, xsph, xsph_mixed,
 };
 use unipbd_core::{Real, Vector};
 
@@ -72,6 +72,11 @@ fn kernel() -> WendlandC2 {
     WendlandC2::new(f64::from(RADIUS))
 }
 
+/// Strengths, and inverse masses of which every third is zero.
+fn traits(set: &Set) -> Vec<Vector> {
+    (0..set.x.len()).map(|row| Vector::new(set.weights[row].abs(), (row % 3) as Real)).collect()
+}
+
 /// The results of every pass, one row of numbers each.
 fn all_passes(set: &Set, kernel: WendlandC2, level: Level, parallelism: Parallelism) -> Vec<(&'static str, Vec<Real>)> {
     let rows = set.x.len();
@@ -98,6 +103,9 @@ fn all_passes(set: &Set, kernel: WendlandC2, level: Level, parallelism: Parallel
     results.push(("vorticity", a.clone()));
     difference_gradient(pairs, kernel, &set.x, &set.field, &mut g);
     results.push(("difference gradient", flat(&g)));
+    let traits = traits(set);
+    xsph_mixed(pairs, kernel, &set.x, &set.v, &traits, &mut g);
+    results.push(("xsph mixed", flat(&g)));
     results
 }
 
@@ -180,11 +188,13 @@ fn passes_compute_their_formulas() {
     for periodic in periods() {
         let set = Set::random(400, periodic);
         let results = all_passes(&set, kernel(), Level::best(), Parallelism::Serial);
+        let traits: Vec<_> = traits(&set).iter().map(|t| (f64::from(t.x), f64::from(t.y))).collect();
+        let traits = |row: usize| traits[row];
         let h = f64::from(RADIUS);
         let pi = std::f64::consts::PI;
         for i in 0..400 {
-            let mut wanted = [0.0; 14];
-            let mut scale = [1e-3; 14];
+            let mut wanted = [0.0; 15];
+            let mut scale = [1e-3; 15];
             for j in (0..400).filter(|&j| j != i) {
                 let apart = |p: &[Vector]| {
                     let d = periodic.min_image(p[i] - p[j]);
@@ -199,6 +209,9 @@ fn passes_compute_their_formulas() {
                 let (u, v) = (f64::from(set.v[j].x - set.v[i].x), f64::from(set.v[j].y - set.v[i].y));
                 let (weight, sum) = (of(&set.weights, j), of(&set.field, i) + of(&set.field, j));
                 let difference = of(&set.field, j) - of(&set.field, i);
+                let (mine, other) = (traits(i), traits(j));
+                let masses = mine.1 + other.1;
+                let exchange = if masses > 0.0 { (mine.0 + other.0) * mine.1 / masses } else { 0.0 };
                 let push = if r == 0.0 { 0.0 } else { (f64::from(0.8 as Real) - r).max(0.0) / r };
                 let flip = if r > 0.0 {
                     0.0
@@ -222,8 +235,9 @@ fn passes_compute_their_formulas() {
                     sum * g * x,
                     g * (x * v - y * u),
                     difference * g * y,
+                    exchange * w * v,
                 ];
-                for k in 0..14 {
+                for k in 0..15 {
                     wanted[k] += terms[k];
                     scale[k] += terms[k].abs();
                 }
@@ -245,13 +259,33 @@ fn passes_compute_their_formulas() {
                 at(10, 2 * i),
                 at(11, i),
                 at(12, 2 * i + 1),
+                at(13, 2 * i + 1),
             ];
-            for k in 0..14 {
+            for k in 0..15 {
                 let error = relative(found[k], wanted[k], scale[k]);
                 assert!(error < 2e-5, "row {i}, quantity {k}: {} instead of {}", found[k], wanted[k]);
             }
         }
     }
+}
+
+#[test]
+fn mixed_viscosity_keeps_momentum_and_drags_nothing_moved_by_a_script() {
+    let set = Set::random(300, Periodic::NONE);
+    let traits: Vec<_> =
+        (0..300).map(|row| Vector::new(0.5 + set.weights[row].abs(), 0.5 + set.field[row].abs())).collect();
+    let mut change = vec![Vector::ZERO; 300];
+    let pairs = set.pairs(Level::best(), Parallelism::Serial);
+    xsph_mixed(pairs, kernel(), &set.x, &set.v, &traits, &mut change);
+    let momentum: Vector = (0..300).map(|row| change[row] / traits[row].y).sum();
+    let size: Real = (0..300).map(|row| change[row].length() / traits[row].y).sum();
+    assert!(momentum.length() < 1e-5 * size, "{momentum} of {size}");
+
+    let scripted: Vec<_> =
+        traits.iter().enumerate().map(|(row, t)| Vector::new(t.x, if row % 5 == 0 { 0.0 } else { t.y })).collect();
+    xsph_mixed(pairs, kernel(), &set.x, &set.v, &scripted, &mut change);
+    assert!(change.iter().step_by(5).all(|change| *change == Vector::ZERO));
+    assert!(change.iter().all(|change| change.is_finite()) && change[1] != Vector::ZERO);
 }
 
 #[test]

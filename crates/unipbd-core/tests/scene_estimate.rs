@@ -54,7 +54,7 @@ fn estimate_and_solver_choose_the_same_substeps() {
         for speed in [0.0, 5.0, 40.0] {
             let mut scene = water([0.0, 0.0], [1.0, depth]);
             scene.block[0].velocity = [0.0, speed];
-            let demand = Demand { speed, pressure: 9.81 * depth };
+            let demand = Demand { speed, pressure: 9.81 * depth, ..Demand::default() };
             let choice = SubstepRule::new(&scene).choose(1.0 / 60.0, demand);
             assert_eq!(scene.estimate().substeps, choice.substeps, "depth {depth}, speed {speed}");
         }

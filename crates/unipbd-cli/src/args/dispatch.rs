@@ -7,7 +7,7 @@ use unipbd_core::scene::nearest;
 
 use crate::exit::Failure;
 
-const COMMANDS: [&str; 7] = ["run", "check", "expect", "info", "render", "schema", "help"];
+const COMMANDS: [&str; 8] = ["run", "check", "expect", "info", "render", "bench", "schema", "help"];
 
 /// Puts `run` in front of a scene that stands where a command is expected.
 ///

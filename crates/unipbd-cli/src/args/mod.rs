@@ -1,5 +1,6 @@
 //! The arguments of the command line.
 
+mod bench;
 mod dispatch;
 mod render;
 mod run;
@@ -10,6 +11,7 @@ use std::path::PathBuf;
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Args, Parser, Subcommand};
 
+pub use bench::BenchArgs;
 pub use dispatch::{is_log, log_is_no_scene, with_default_command};
 pub use render::RenderArgs;
 pub use run::{LogArgs, RunArgs, SceneChanges};
@@ -39,6 +41,7 @@ Examples:
   unipbd scenes/open_gas.toml                      run a scene, record open_gas.mcap
   unipbd check my_scene.toml                       find mistakes, estimate the cost
   unipbd run my_scene.toml --set spacing=0.05      run with another particle distance [m]
+  unipbd bench my_scene.toml --threads 1,2         time a scene
   unipbd render open_gas.mcap -o plume.gif         make an animation of a log
   unipbd run my_scene.toml --json --no-record | jq .density_error_max";
 
@@ -91,6 +94,8 @@ pub enum Command {
     Info(InfoArgs),
     /// Draw a log (or a scene, which is run first) as PNG frames, GIF or MP4
     Render(RenderArgs),
+    /// Time a scene, by stage and number of threads
+    Bench(BenchArgs),
     /// Print the JSON schema of scene files, for completion and checking in editors
     #[command(after_help = "Example:\n  unipbd schema > scene.schema.json")]
     Schema,

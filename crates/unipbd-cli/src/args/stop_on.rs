@@ -18,6 +18,8 @@ const QUANTITIES: &[(&str, Quantity)] = &[
     ("frame", |d| d.frame as f64),
     ("step", |d| d.step as f64),
     ("substeps", |d| f64::from(d.substeps)),
+    ("substeps_wanted", |d| f64::from(d.substeps_wanted)),
+    ("contact_penetration", |d| d.contact_penetration),
     ("iterations", |d| f64::from(d.iterations)),
     ("list_builds", |d| f64::from(d.list_builds)),
     ("particles", |d| d.particles() as f64),
@@ -122,6 +124,7 @@ mod tests {
             speed_max: 3.0,
             materials: Vec::new(),
             groups: Vec::new(),
+            ..Diagnostics::default()
         }
     }
 

@@ -1,5 +1,6 @@
 //! The commands, one file each.
 
+mod bench;
 mod check;
 mod estimate;
 mod expect;
@@ -22,6 +23,7 @@ pub fn execute(command: &Command, console: Console) -> Result<Exit, Failure> {
         Command::Expect(arguments) => expect::expect(arguments, console),
         Command::Info(arguments) => info::info(arguments, console),
         Command::Render(arguments) => render::render(arguments, console),
+        Command::Bench(arguments) => bench::bench(arguments, console),
         Command::Schema => schema::schema(console),
     }
 }

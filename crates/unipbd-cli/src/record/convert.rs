@@ -35,6 +35,9 @@ pub(crate) fn diagnostics_message(diagnostics: &Diagnostics, state_hash: Option<
         state_hash: state_hash.map(|hash| format!("{hash:016x}")).unwrap_or_default(),
         materials: diagnostics.materials.iter().map(material_message).collect(),
         groups: diagnostics.groups.iter().map(group_message).collect(),
+        substeps_wanted: diagnostics.substeps_wanted,
+        substeps_reason: diagnostics.substeps_reason.name().to_owned(),
+        contact_penetration: diagnostics.contact_penetration,
     }
 }
 

@@ -131,6 +131,15 @@ messages! {
         /// Per constraint group, in solving order.
         #[prost(tag = "24", message, repeated)]
         groups: Vec<GroupDiagnostics>,
+        /// Substeps that the last frame asked for.
+        #[prost(tag = "25", uint32)]
+        substeps_wanted: u32,
+        /// What decided the number of substeps.
+        #[prost(tag = "26", string)]
+        substeps_reason: String,
+        /// Deepest overlap of bodies with each other and with walls [m].
+        #[prost(tag = "27", double)]
+        contact_penetration: f64,
     }
 
     /// Diagnostics of one material.

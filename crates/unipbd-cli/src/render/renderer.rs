@@ -100,11 +100,12 @@ impl Renderer {
                     Style::Surface => scope.gas(image, field),
                     Style::Discs => scope.discs(image, |phase| phase == Phase::Gas, 0.16),
                 }
-                scope.smoke(image, field);
                 match style {
                     Style::Surface => scope.surface(image, field, |phase| phase == Phase::Liquid),
                     Style::Discs => scope.discs(image, |phase| phase == Phase::Liquid, 1.0),
                 }
+                // Over liquids too: smoke in a liquid is its dye.
+                scope.smoke(image, field);
                 scope.discs(image, |phase| phase == Phase::Solid, 1.0);
             }
         }

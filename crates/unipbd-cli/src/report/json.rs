@@ -31,6 +31,8 @@ pub struct FrameLine<'a> {
     time: f64,
     step: u64,
     substeps: u32,
+    substeps_wanted: u32,
+    substeps_reason: &'static str,
     iterations: u32,
     list_builds: u32,
     particles: u64,
@@ -44,6 +46,7 @@ pub struct FrameLine<'a> {
     momentum: [f64; 2],
     angular_momentum: f64,
     speed_max: f64,
+    contact_penetration: f64,
     materials: BTreeMap<&'a str, MaterialEntry>,
     groups: BTreeMap<&'a str, GroupEntry>,
 }
@@ -68,6 +71,8 @@ impl<'a> From<&'a Diagnostics> for FrameLine<'a> {
             time: diagnostics.time,
             step: diagnostics.step,
             substeps: diagnostics.substeps,
+            substeps_wanted: diagnostics.substeps_wanted,
+            substeps_reason: diagnostics.substeps_reason.name(),
             iterations: diagnostics.iterations,
             list_builds: diagnostics.list_builds,
             particles: diagnostics.particles(),
@@ -81,6 +86,7 @@ impl<'a> From<&'a Diagnostics> for FrameLine<'a> {
             momentum: diagnostics.momentum.into(),
             angular_momentum: diagnostics.angular_momentum,
             speed_max: diagnostics.speed_max,
+            contact_penetration: diagnostics.contact_penetration,
             materials: materials(diagnostics),
             groups: groups(diagnostics),
         }

@@ -143,6 +143,7 @@ pub fn diagnostics(snapshot: &Snapshot, frame: u32) -> Diagnostics {
         speed_max: 1.0 + noise(2, frame),
         materials: vec![material("water"), material("air")],
         groups: vec![GroupDiagnostics { name: "density".to_owned(), violation: 0.06 }],
+        ..Diagnostics::default()
     }
 }
 

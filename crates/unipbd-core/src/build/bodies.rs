@@ -6,8 +6,8 @@ use crate::bodies::{
 };
 use crate::constraints::contact::{ContactSettings, Contacts, DistanceRule, Joint, JointKind, Motor};
 use crate::math::Vector64;
-use crate::scene::{BodyDescription, Heap, JointDescription, JointRule, MotionDescription, RotationRule, Scene, Side};
-use crate::shapes::{Shape, Wall};
+use crate::scene::{BodyDescription, JointDescription, JointRule, MotionDescription, RotationRule, Scene, Side};
+use crate::shapes::Wall;
 
 /// All bodies of a scene, and the contacts and joints between them and its walls.
 pub(super) fn build(scene: &Scene) -> (Bodies, Contacts) {
@@ -27,17 +27,6 @@ pub(super) fn build(scene: &Scene) -> (Bodies, Contacts) {
     (bodies, contacts)
 }
 
-/// The names of all bodies, copies included.
-pub(crate) fn body_names(scene: &Scene) -> Vec<String> {
-    let named = |(number, description)| specifications(description, number).into_iter().map(|spec| spec.name);
-    scene.body.iter().enumerate().flat_map(named).collect()
-}
-
-/// Where a body and its copies start [m].
-pub(crate) fn body_copies(description: &BodyDescription) -> Vec<[f64; 2]> {
-    specifications(description, 0).iter().map(|spec| spec.pose.position.into()).collect()
-}
-
 /// All bodies where they start.
 pub(super) fn solids(scene: &Scene) -> Vec<Solid> {
     let specs = scene.body.iter().enumerate().flat_map(|(number, description)| specifications(description, number));
@@ -51,34 +40,17 @@ pub(super) fn solids(scene: &Scene) -> Vec<Solid> {
 
 /// A body and its copies.
 fn specifications(description: &BodyDescription, number: usize) -> Vec<BodySpec> {
-    let name = if description.name.is_empty() { format!("body {number}") } else { description.name.clone() };
-    let one = specification(description, name);
-    let Some(copies) = &description.copies else { return vec![one] };
-    let mut all = Vec::new();
-    for row in 0..copies.rows {
-        let (columns, shift) = match copies.heap {
-            Heap::Grid => (copies.columns, 0.0),
-            Heap::Brick => (copies.columns, 0.5 * f64::from(row % 2)),
-            Heap::Pyramid => (copies.columns.saturating_sub(row), 0.5 * f64::from(row)),
-        };
-        for column in 0..columns {
-            let offset = Vector64::new((f64::from(column) + shift) * copies.step[0], f64::from(row) * copies.step[1]);
-            let mut copy = one.clone();
-            copy.name = format!("{} {}", one.name, all.len());
-            copy.pose.position += offset;
-            all.push(copy);
-        }
-    }
-    all
+    let instances = description.instances(number).into_iter();
+    instances.map(|(name, position)| specification(description, name, position)).collect()
 }
 
-fn specification(description: &BodyDescription, name: String) -> BodySpec {
+fn specification(description: &BodyDescription, name: String, position: Vector64) -> BodySpec {
     let layers = |list: &[u8]| list.iter().fold(0, |mask, &layer| mask | 1_u32 << (layer & 31));
     BodySpec {
         name,
         kind: description.kind,
-        shape: shape(description),
-        pose: Pose { position: description.position.into(), angle: description.angle_deg.to_radians() },
+        shape: description.shape(),
+        pose: Pose { position, angle: description.angle_deg.to_radians() },
         velocity: Twist { linear: description.velocity.into(), angular: description.spin_deg.to_radians() },
         mass: description.mass.map_or(MassSpec::Density(description.density), MassSpec::Mass),
         surface: Surface {
@@ -97,15 +69,6 @@ fn specification(description: &BodyDescription, name: String) -> BodySpec {
         },
         gravity_factor: description.gravity_factor,
         motion: description.motion.as_ref().map_or(Motion::Still, motion),
-    }
-}
-
-/// The outline of a body; a small disc where none is given, which `Scene::validate` refuses.
-pub(crate) fn shape(description: &BodyDescription) -> Shape {
-    match (&description.outline, description.size, description.radius) {
-        (Some(outline), _, _) => Shape::Polygon(outline.iter().map(|&corner| corner.into()).collect()),
-        (None, Some([width, height]), _) => Shape::rectangle(width, height),
-        (None, None, radius) => Shape::Disc { radius: radius.unwrap_or_default() },
     }
 }
 

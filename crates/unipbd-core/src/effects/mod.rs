@@ -1,19 +1,25 @@
 //! Velocity passes after the projection: viscosity, drag, vorticity confinement, heat, and the
 //! advection of smoke. None of them moves a constrained particle.
 
+mod cohesion;
 mod conduction;
 mod confinement;
 mod drag;
 mod heating;
+mod quadratic_drag;
+mod shear_viscosity;
 mod smoke;
 mod viscosity;
 mod wind;
 
+pub use cohesion::Cohesion;
 pub use conduction::Conduction;
 pub use confinement::VorticityConfinement;
 pub use drag::Drag;
 pub use heating::Heating;
-pub use smoke::SmokeAdvection;
+pub use quadratic_drag::QuadraticDrag;
+pub use shear_viscosity::ShearViscosity;
+pub use smoke::{Advected, SmokeAdvection};
 pub use viscosity::Viscosity;
 pub use wind::Wind;
 

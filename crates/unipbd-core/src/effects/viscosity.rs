@@ -13,6 +13,8 @@ pub struct Viscosity {
     strength: Vec<Real>,
     /// The viscosity of all dense particles, where they are of one material.
     uniform: Option<Real>,
+    /// Viscosity times volume, and inverse mass, by row.
+    traits: Vec<Vector>,
 }
 
 impl Viscosity {
@@ -29,6 +31,7 @@ impl Viscosity {
             volume: real(scene.spacing * scene.spacing),
             uniform: uniform(scene, &strength),
             strength,
+            traits: Vec::new(),
         })
     }
 }
@@ -60,23 +63,14 @@ impl Viscosity {
         simd::xsph(now.pairs(), self.kernel.shape(), positions, velocities, weights, &mut out.velocity);
     }
 
-    fn apply_mixed(&self, now: Substep<'_>, out: &mut Changes) {
-        let (positions, velocities) = (now.particles.positions(), now.particles.velocities());
-        let (inverse_masses, materials) = (now.particles.inverse_masses(), now.particles.materials());
-        let periodic = now.neighbors.periodic();
-        let strength = |row: usize| self.strength[usize::from(materials[row])];
-        now.parallelism.update(&mut out.velocity, |i, change| {
-            let mut sum = Vector::ZERO;
-            now.neighbors.for_each(i, |j| {
-                let pair = 0.5 * (strength(i) + strength(j));
-                let masses = inverse_masses[i] + inverse_masses[j];
-                if pair > 0.0 && masses > 0.0 {
-                    let apart = periodic.min_image(positions[i] - positions[j]);
-                    let weight = self.kernel.value(apart.length());
-                    sum += (velocities[j] - velocities[i]) * (weight * pair * 2.0 * inverse_masses[i] / masses);
-                }
-            });
-            *change += sum * self.volume;
-        });
+    fn apply_mixed(&mut self, now: Substep<'_>, out: &mut Changes) {
+        let particles = now.particles;
+        let (inverse_masses, materials) = (particles.inverse_masses(), particles.materials());
+        let (strength, traits) = (&self.strength, &mut self.traits);
+        traits.resize(particles.dense(), Vector::ZERO);
+        now.parallelism
+            .fill(traits, |row| Vector::new(self.volume * strength[usize::from(materials[row])], inverse_masses[row]));
+        let (positions, velocities) = (particles.positions(), particles.velocities());
+        simd::xsph_mixed(now.pairs(), self.kernel.shape(), positions, velocities, &self.traits, &mut out.velocity);
     }
 }

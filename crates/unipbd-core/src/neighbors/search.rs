@@ -5,6 +5,7 @@ use crate::bytes::{Damage, Reader, Writer};
 use crate::math::{Real, Vector};
 use crate::parallel::Parallelism;
 use crate::particles::{Particles, Scratch};
+use std::ops::Range;
 
 /// Cost of a list build over that of the passes of one substep (measured, order of magnitude): decides
 /// for how many substeps a list should last.
@@ -63,6 +64,23 @@ impl SavedList {
     }
 }
 
+/// Where the rows near a point are.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Runs {
+    /// Rows of the grid are higher than a search reaches, so it touches three, or four by rounding; the
+    /// border of a periodic axis cuts each of both directions in two.
+    runs: [Range<u32>; 16],
+    count: usize,
+}
+
+impl Runs {
+    /// The runs, in order.
+    #[inline(always)]
+    pub fn iter(&self) -> impl Iterator<Item = Range<usize>> + '_ {
+        self.runs[..self.count].iter().map(|run| run.start as usize..run.end as usize)
+    }
+}
+
 /// Neighbours of the dense particles.
 pub struct Neighbors {
     grid: Grid,
@@ -103,6 +121,18 @@ impl Neighbors {
     #[inline]
     pub fn for_each(&self, row: usize, visit: impl FnMut(usize)) {
         self.list.list().for_each(row, visit);
+    }
+
+    /// Runs of dense rows that hold every one within the kernel's radius of a point, and some more; no
+    /// row twice.
+    #[inline]
+    pub(crate) fn runs_near(&self, point: Vector) -> Runs {
+        let mut runs = Runs::default();
+        self.list.for_each_run_near(&self.grid, &self.motion, point, self.radius, |run| {
+            runs.runs[runs.count] = run.start as u32..run.end as u32;
+            runs.count += 1;
+        });
+        runs
     }
 
     /// Visits every dense row within `radius` of any point, and some more.

@@ -9,6 +9,7 @@ use super::grid::{Cursor, Grid};
 use super::list::NeighborList;
 use crate::math::{Real, Vector};
 use crate::parallel::Parallelism;
+use std::ops::Range;
 
 /// How particles have moved since a list was built.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -115,9 +116,22 @@ impl SkinList {
         radius: Real,
         mut visit: impl FnMut(usize),
     ) {
+        self.for_each_run_near(grid, motion, point, radius, |run| run.for_each(&mut visit));
+    }
+
+    /// As [`for_each_near`](Self::for_each_near), in runs of consecutive rows.
+    #[inline]
+    pub fn for_each_run_near(
+        &self,
+        grid: &Grid,
+        motion: &Motion,
+        point: Vector,
+        radius: Real,
+        mut visit: impl FnMut(Range<usize>),
+    ) {
         let reach = radius + 0.5 * motion.needed_skin();
         grid.for_each_run(point - motion.drift, reach, &mut Cursor::default(), |run| {
-            run.for_each(|row| visit(row as usize));
+            visit(run.start as usize..run.end as usize);
         });
     }
 

@@ -13,6 +13,14 @@ pub struct Liquid {
     pub density: f64,
     /// XSPH viscosity per substep, 0 to 1: the fraction of velocity differences that is smoothed.
     pub viscosity: f64,
+    /// Kinematic viscosity nu; a physical one, beside the cheap smoothing above [m^2/s].
+    pub kinematic_viscosity: f64,
+    /// Whether it has a free surface, or fills its domain and resists dilation too.
+    pub surface: LiquidSurface,
+    /// Strength of surface tension, the pull of a particle on its neighbour [m/s^2].
+    pub cohesion: f64,
+    /// Drag against the air that grows with the square of the speed [1/m].
+    pub quadratic_drag: f64,
     /// Factor on gravity.
     pub gravity_factor: f64,
     /// Colour in pictures and logs, `"#rrggbb"`.
@@ -22,8 +30,30 @@ pub struct Liquid {
 
 impl Default for Liquid {
     fn default() -> Self {
-        Liquid { name: String::new(), density: 1000.0, viscosity: 0.0, gravity_factor: 1.0, color: None }
+        Liquid {
+            name: String::new(),
+            density: 1000.0,
+            viscosity: 0.0,
+            kinematic_viscosity: 0.0,
+            surface: LiquidSurface::Free,
+            cohesion: 0.0,
+            quadratic_drag: 0.0,
+            gravity_factor: 1.0,
+            color: None,
+        }
     }
+}
+
+/// Whether a liquid has a free surface.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum LiquidSurface {
+    /// It resists compression alone and parts freely.
+    #[default]
+    Free,
+    /// It fills its domain: it resists compression and dilation.
+    None,
 }
 
 /// A gas: fills its domain or a plume, resists compression and dilation, carries heat and smoke.
@@ -39,12 +69,16 @@ pub struct Gas {
     pub gravity_factor: f64,
     /// Drag rate k towards the environment velocity where the gas is thin [1/s].
     pub drag: f64,
+    /// Drag that grows with the square of the speed [1/m].
+    pub quadratic_drag: f64,
     /// Strength of vorticity confinement, dimensionless (0 is off; above 5 it adds energy).
     pub vorticity: f64,
     /// Diffusivity of temperature [m^2/s].
     pub conductivity: f64,
     /// XSPH viscosity per substep, 0 to 1.
     pub viscosity: f64,
+    /// Kinematic viscosity nu [m^2/s].
+    pub kinematic_viscosity: f64,
     /// Time after which a particle is removed [s]; left out, it stays.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lifetime: Option<f64>,
@@ -65,9 +99,11 @@ impl Default for Gas {
             density: 1.2,
             gravity_factor: -0.3,
             drag: 0.0,
+            quadratic_drag: 0.0,
             vorticity: 0.0,
             conductivity: 0.0,
             viscosity: 0.0,
+            kinematic_viscosity: 0.0,
             lifetime: None,
             keep_radius: None,
             keep_age: 0.3,
@@ -161,6 +197,24 @@ impl<'a> MaterialRef<'a> {
             MaterialRef::Gas(gas) => gas.density,
             MaterialRef::Smoke(_) | MaterialRef::Rigid => 0.0,
             MaterialRef::Solid(solid) => solid.density,
+        }
+    }
+
+    /// Kinematic viscosity [m^2/s].
+    pub fn kinematic_viscosity(&self) -> f64 {
+        match self {
+            MaterialRef::Liquid(liquid) => liquid.kinematic_viscosity,
+            MaterialRef::Gas(gas) => gas.kinematic_viscosity,
+            _ => 0.0,
+        }
+    }
+
+    /// Whether its density constraint resists dilation as well as compression.
+    pub fn is_two_sided(&self) -> bool {
+        match self {
+            MaterialRef::Liquid(liquid) => liquid.surface == LiquidSurface::None,
+            MaterialRef::Gas(_) => true,
+            _ => false,
         }
     }
 

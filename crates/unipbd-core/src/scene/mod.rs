@@ -4,6 +4,7 @@
 //! [`Scene::estimate`] says what it would cost, [`Scene::build`] makes a [`Solver`](crate::Solver).
 
 mod bodies;
+mod copies;
 mod description;
 mod estimate;
 mod expect;
@@ -26,14 +27,14 @@ pub use bodies::{
 pub use description::{Domain, Environment, Scene, View};
 pub use estimate::{BYTES_PER_PARTICLE, Estimate, SECONDS_PER_PARTICLE_AND_SUBSTEP};
 pub use expect::{BodyExpectation, Expect, MaterialExpectation};
-pub use materials::{Gas, Liquid, MaterialRef, Smoke, Solid};
+pub use materials::{Gas, Liquid, LiquidSurface, MaterialRef, Smoke, Solid};
 pub use nearest::nearest;
 pub use points::{PointMotion, Points};
 pub use problem::{KeyPath, KeySegment, Problem, Problems};
 pub use regions::{Heater, Injector, Region, Sink};
-pub use settings::{GradientPoint, SolverSettings, Substeps};
+pub use settings::{GradientPoint, KernelKind, SolverSettings, Substeps};
 pub use sources::{Block, Disc, Emitter, Profile, Sheath, SmokeSource};
-pub use walls::{HalfPlane, Obstacle, Side, Tank};
+pub use walls::{HalfPlane, Obstacle, Side, Slip, Tank};
 pub use waves::Wave;
 
 pub(crate) use layout::{block_points, disc_points};

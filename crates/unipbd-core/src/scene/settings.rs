@@ -12,8 +12,11 @@ pub struct SolverSettings {
     pub max_substeps: u32,
     /// Target of `"auto"` for the largest compression of a liquid, as a fraction.
     pub target_compression: f64,
-    /// Constraint iterations per substep.
+    /// Constraint iterations per substep; with a tolerance, the most.
     pub iterations: u32,
+    /// The iteration ends once no constraint is violated by more; 0 runs all iterations. A density
+    /// error is a fraction.
+    pub tolerance: f64,
     /// Kernel radius h in spacings.
     pub kernel_radius: f64,
     /// Where density gradients are evaluated; left out, `start` with gas and `predicted` without.
@@ -22,6 +25,12 @@ pub struct SolverSettings {
     /// Relaxation of the density iteration, omega; left out, 0.5 for liquids, 0.4 for gas.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub relaxation: Option<f64>,
+    /// Smoothing kernel of the density.
+    pub kernel: KernelKind,
+    /// Constraint force mixing of Macklin & Müller 2013, as a part of the denominator at rest.
+    pub constraint_mixing: f64,
+    /// Artificial pressure k of Macklin & Müller 2013 (n = 4, 0.2 h), in squared spacings.
+    pub artificial_pressure: f64,
     /// Substeps without gravity before time 0 that bring the start to its rest density.
     pub settle_substeps: u32,
 }
@@ -33,9 +42,13 @@ impl Default for SolverSettings {
             max_substeps: 256,
             target_compression: 0.01,
             iterations: 1,
+            tolerance: 0.0,
             kernel_radius: 2.5,
             gradients: None,
             relaxation: None,
+            kernel: KernelKind::default(),
+            constraint_mixing: 0.0,
+            artificial_pressure: 0.0,
             settle_substeps: 40,
         }
     }
@@ -103,6 +116,22 @@ enum SubstepsWord {
 pub enum GradientPoint {
     /// At the positions of the start of the substep (less damping, one more pass).
     Start,
+    /// Value and gradient half way between start and prediction (less damping, larger density errors).
+    Middle,
     /// At the predicted positions.
     Predicted,
+}
+
+/// The smoothing kernel of the density.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum KernelKind {
+    /// Wendland C2: the most accurate.
+    #[default]
+    WendlandC2,
+    /// The cubic spline of Monaghan 1992.
+    CubicSpline,
+    /// Density by poly6, gradients by spiky, as in Müller et al. 2003: inconsistent, for comparison.
+    Poly6Spiky,
 }

@@ -9,9 +9,15 @@ pub struct HalfPlane {
     pub point: [f64; 2],
     /// Direction from the wall towards the particles; need not have length 1.
     pub normal: [f64; 2],
+    /// Velocity at which the wall slides along itself: viscous fluids without slip feel it [m/s].
+    #[serde(default)]
+    pub velocity: [f64; 2],
     /// Coulomb friction coefficient.
     #[serde(default)]
     pub friction: f64,
+    /// Whether a fluid with a kinematic viscosity slips along it.
+    #[serde(default)]
+    pub slip: Slip,
 }
 
 /// A static container: particles stay inside the rectangle.
@@ -29,6 +35,9 @@ pub struct Tank {
     /// Coulomb friction coefficient.
     #[serde(default)]
     pub friction: f64,
+    /// Whether a fluid with a kinematic viscosity slips along it.
+    #[serde(default)]
+    pub slip: Slip,
 }
 
 /// A static box: particles stay outside the rectangle.
@@ -43,6 +52,9 @@ pub struct Obstacle {
     /// Coulomb friction coefficient.
     #[serde(default)]
     pub friction: f64,
+    /// Whether a fluid with a kinematic viscosity slips along it.
+    #[serde(default)]
+    pub slip: Slip,
 }
 
 /// A side of a rectangle.
@@ -58,4 +70,16 @@ pub enum Side {
     Bottom,
     /// Largest y.
     Top,
+}
+
+/// Whether a viscous fluid slips along a wall.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Slip {
+    /// The wall exerts no shear.
+    #[default]
+    Free,
+    /// The fluid at the wall moves with it.
+    None,
 }

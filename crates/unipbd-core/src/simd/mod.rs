@@ -13,6 +13,7 @@ pub(crate) mod near;
 mod passes;
 mod shapes;
 pub(crate) mod space;
+pub(crate) mod weigh;
 
 #[cfg(not(feature = "f64"))]
 mod lanes;
@@ -25,9 +26,9 @@ mod x86;
 
 pub use passes::{
     DensityInput, DensityOutput, Pairs, Weights, correction, density, difference_gradient, laplacian, repulsion,
-    vorticity, xsph,
+    vorticity, xsph, xsph_mixed,
 };
-pub use shapes::{CubicSpline, Mixed, Number, Poly6, Shape, Spiky, WendlandC2};
+pub use shapes::{Alternative, CubicSpline, Mixed, Number, Poly6, Shape, SlopeAsValue, Spiky, Tensile, WendlandC2};
 
 /// An instruction set that passes are compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

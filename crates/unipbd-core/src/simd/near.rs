@@ -1,9 +1,11 @@
-//! The inner loops of the list build: which points of a run are near the rows of a block, and the
-//! transposition of what was found into columns.
+//! The inner loops over runs of rows: which of them are near the rows of a block, the transposition
+//! of what was found into columns, and what they weigh at a point.
 #![cfg_attr(not(feature = "f64"), allow(unsafe_code))]
 
 use super::Level;
+use super::shapes::Shape;
 use super::space::Space;
+use super::weigh::{At, Weighed};
 use crate::math::{Real, Vector};
 use crate::neighbors::LANES;
 use std::ops::Range;
@@ -100,6 +102,9 @@ pub(crate) trait Near: Copy {
     /// Appends `depth` columns of what was found, relative to the first row of the block, which all
     /// fit in 16 bits. Short lanes are filled up with `padding`.
     fn columns(self, found: &Found, depth: usize, padding: [i16; LANES], out: &mut Vec<[i16; LANES]>);
+
+    /// Adds to `sums` what the rows of `run` weigh at a point.
+    fn weigh<S: Space, K: Shape>(self, at: &At<'_, S, K>, run: Range<usize>, sums: &mut Weighed);
 }
 
 /// Work that is done in the best instruction set of this machine.
@@ -155,11 +160,18 @@ impl Near for OneByOne {
     fn columns(self, found: &Found, depth: usize, padding: [i16; LANES], out: &mut Vec<[i16; LANES]>) {
         found.transpose(depth, padding, |offset| offset as i16, out);
     }
+
+    #[inline(always)]
+    fn weigh<S: Space, K: Shape>(self, at: &At<'_, S, K>, run: Range<usize>, sums: &mut Weighed) {
+        sums.add_one_by_one(at, run);
+    }
 }
 
 #[cfg(all(target_arch = "x86_64", not(feature = "f64")))]
 mod avx2 {
     use super::super::lanes::Lanes;
+    use super::super::shapes::Shape;
+    use super::super::weigh::{At, Weighed};
     use super::super::x86::Avx2;
     use super::{Found, LANES, Near, OneByOne, Real, SPARE, Space, Vector, Work};
     use std::arch::x86_64::*;
@@ -250,6 +262,12 @@ mod avx2 {
                 let columns = unsafe { eight_columns(found, first, padding) };
                 out.extend_from_slice(&columns[..LANES.min(depth - first)]);
             }
+        }
+
+        #[inline(always)]
+        fn weigh<S: Space, K: Shape>(self, at: &At<'_, S, K>, run: Range<usize>, sums: &mut Weighed) {
+            // SAFETY: a value of this type proves AVX2.
+            unsafe { sums.add_eight_at_a_time(at, run) }
         }
     }
 

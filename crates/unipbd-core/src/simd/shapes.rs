@@ -224,6 +224,87 @@ impl<V: Shape, S: Shape> Shape for Mixed<V, S> {
     }
 }
 
+/// The kernels that are there for comparison, told apart at run time so that passes are not
+/// compiled for each of them.
+#[derive(Clone, Copy, Debug)]
+pub enum Alternative {
+    /// The cubic spline.
+    CubicSpline(CubicSpline),
+    /// Poly6 with the gradient of spiky.
+    Poly6Spiky(Mixed<Poly6, Spiky>),
+}
+
+impl Shape for Alternative {
+    #[inline(always)]
+    fn at<N: Number>(&self, square: N) -> (N, N) {
+        match self {
+            Alternative::CubicSpline(shape) => shape.at(square),
+            Alternative::Poly6Spiky(shape) => shape.at(square),
+        }
+    }
+    fn value_scale(&self) -> Real {
+        match self {
+            Alternative::CubicSpline(shape) => shape.value_scale(),
+            Alternative::Poly6Spiky(shape) => shape.value_scale(),
+        }
+    }
+    fn slope_scale(&self) -> Real {
+        match self {
+            Alternative::CubicSpline(shape) => shape.slope_scale(),
+            Alternative::Poly6Spiky(shape) => shape.slope_scale(),
+        }
+    }
+}
+
+/// A kernel whose value is the g of another one: sums over it make a Laplacian (Brookshaw 1985).
+#[derive(Clone, Copy, Debug)]
+pub struct SlopeAsValue<K>(pub K);
+
+impl<K: Shape> Shape for SlopeAsValue<K> {
+    #[inline(always)]
+    fn at<N: Number>(&self, square: N) -> (N, N) {
+        let slope = self.0.at(square).1;
+        (slope, slope)
+    }
+    fn value_scale(&self) -> Real {
+        self.0.slope_scale()
+    }
+    fn slope_scale(&self) -> Real {
+        self.0.slope_scale()
+    }
+}
+
+/// The artificial pressure of Monaghan 2000: g times (W/W0)^4.
+#[derive(Clone, Copy, Debug)]
+pub struct Tensile<K> {
+    kernel: K,
+    inverse_reference: Real,
+}
+
+impl<K: Shape> Tensile<K> {
+    /// With W0 the value of the kernel at this distance [m].
+    pub fn new(kernel: K, reference: f64) -> Self {
+        let value = kernel.at(real(reference * reference)).0;
+        Tensile { kernel, inverse_reference: 1.0 / value }
+    }
+}
+
+impl<K: Shape> Shape for Tensile<K> {
+    #[inline(always)]
+    fn at<N: Number>(&self, square: N) -> (N, N) {
+        let (value, slope) = self.kernel.at(square);
+        let ratio = value * value.like(self.inverse_reference);
+        let squared = ratio * ratio;
+        (value, slope * (squared * squared))
+    }
+    fn value_scale(&self) -> Real {
+        self.kernel.value_scale()
+    }
+    fn slope_scale(&self) -> Real {
+        self.kernel.slope_scale()
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -15,8 +15,12 @@ use crate::scene::{Emitter, Profile, Scene};
 
 use super::saved::{ColumnState, EmitterState, ROWS_BEHIND};
 
-/// Mean compression ahead of the face at which the throttle begins to close.
-const THROTTLE_COMPRESSION: f64 = 0.02;
+/// Mean compression ahead of the face at which the throttle begins to close; at twice that it is shut.
+const THROTTLE_COMPRESSION: f64 = 0.015;
+/// Way of the flow, in spacings, over which the compression ahead is averaged while it grows...
+const WAY_TO_CLOSE: f64 = 1.0;
+/// ...and while it falls: a nozzle that opens at once again would hammer on what blocks it.
+const WAY_TO_OPEN: f64 = 8.0;
 
 /// All emitters of a scene.
 pub struct EmitterSystem {
@@ -160,7 +164,7 @@ impl Nozzle {
             state: EmitterState {
                 rng: rng.state(),
                 running: false,
-                throttle: 1.0,
+                compression: 0.0,
                 columns: vec![still; columns.len()],
             },
             columns,
@@ -173,7 +177,7 @@ impl Nozzle {
 
     fn will_change(&self, time: f64, dt: f64) -> bool {
         let crossing = |(column, state): (&Column, &ColumnState)| {
-            state.progress + column.speed * self.state.throttle * dt / self.spacing >= 1.0
+            state.progress + column.speed * self.state.throttle() * dt / self.spacing >= 1.0
         };
         self.is_active(time) != self.state.running
             || self.state.running && self.columns.iter().zip(&self.state.columns).any(crossing)
@@ -191,7 +195,7 @@ impl Nozzle {
         }
         // Where particles were just removed, the rows of the list are gone: the throttle stays.
         if self.throttled && neighbors.is_current() {
-            self.state.throttle = self.throttle(particles, neighbors);
+            self.feel(dt, particles, neighbors);
         }
         for index in 0..self.columns.len() {
             self.advance_column(index, dt, particles, rows);
@@ -220,7 +224,7 @@ impl Nozzle {
 
     fn advance_column(&mut self, index: usize, dt: f64, particles: &mut Particles, rows: &RowIndex) {
         let column = &self.columns[index];
-        let speed = column.speed * self.state.throttle;
+        let speed = column.speed * self.state.throttle();
         self.state.columns[index].progress += speed * dt / self.spacing;
         while self.state.columns[index].progress >= 1.0 {
             self.state.columns[index].progress -= 1.0;
@@ -263,7 +267,7 @@ impl Nozzle {
             + shift * self.spacing;
         particles.push(NewParticle {
             position: vector(place),
-            velocity: vector(self.direction * (speed * self.state.throttle)),
+            velocity: vector(self.direction * (speed * self.state.throttle())),
             inverse_mass: 0.0,
             material: self.carrier.material,
             phase: self.carrier.phase,
@@ -296,8 +300,17 @@ impl Nozzle {
         shift
     }
 
-    /// Part of the full speed, from the mean compression just ahead of the face.
-    fn throttle(&self, particles: &Particles, neighbors: &Neighbors) -> f64 {
+    /// Takes up the compression ahead of the face, averaged over the way of the flow.
+    fn feel(&mut self, dt: f64, particles: &Particles, neighbors: &Neighbors) {
+        let (felt, now) = (self.state.compression, self.compression_ahead(particles, neighbors));
+        let fastest = self.columns.iter().map(|column| column.speed).fold(0.0, f64::max);
+        let way = if now > felt { WAY_TO_CLOSE } else { WAY_TO_OPEN };
+        let part = (fastest * dt / (way * self.spacing)).min(1.0);
+        self.state.compression = (felt + (now - felt) * part).min(1.0);
+    }
+
+    /// Mean of max(C, 0) just ahead of the face.
+    fn compression_ahead(&self, particles: &Particles, neighbors: &Neighbors) -> f64 {
         let (mut sum, mut count) = (0.0, 0_u32);
         let reach = 1.5 * self.spacing;
         for column in &self.columns {
@@ -310,8 +323,14 @@ impl Nozzle {
                 }
             });
         }
-        let mean = if count > 0 { sum / f64::from(count) } else { 0.0 };
-        (2.0 - mean / THROTTLE_COMPRESSION).clamp(0.0, 1.0)
+        if count > 0 { sum / f64::from(count) } else { 0.0 }
+    }
+}
+
+impl EmitterState {
+    /// Part of the full speed at which the nozzle pushes.
+    fn throttle(&self) -> f64 {
+        (2.0 - self.compression / THROTTLE_COMPRESSION).clamp(0.0, 1.0)
     }
 }
 

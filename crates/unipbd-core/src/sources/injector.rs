@@ -12,6 +12,12 @@ const ROOM: f64 = 0.9;
 /// Stream of random places, one per injector.
 const INJECTOR_STREAM: u64 = 5 << 32;
 
+/// Whole numbers up to a count that grows with time. The end of one substep and the start of the next
+/// are the same moment but for rounding: they must give the same number.
+pub(super) fn due_until(count: f64) -> u64 {
+    (count + 1e-6).floor() as u64
+}
+
 /// An injector of a scene. It has no state: which particle is due when follows from the time, and
 /// where it goes from its number and the seed.
 pub(super) struct RegionInjector {
@@ -54,7 +60,7 @@ impl RegionInjector {
 
     /// Numbers of the particles that are due between two times.
     fn due(&self, time: f64, dt: f64) -> std::ops::Range<u64> {
-        let until = |time: f64| ((time.min(self.stop) - self.start).max(0.0) * self.rate).floor() as u64;
+        let until = |time: f64| due_until((time.min(self.stop) - self.start).max(0.0) * self.rate);
         until(time)..until(time + dt)
     }
 

@@ -14,6 +14,9 @@ pub struct RemovalRules {
     region: Option<(Vector, Vector)>,
     keep_radius: Real,
     smoke: Grid,
+    /// Positions of the smoke: as they come, and in the order of the grid.
+    markers: Vec<Vector>,
+    sorted: Vec<Vector>,
     sinks: Vec<RegionSink>,
     frame_time: f64,
 }
@@ -62,6 +65,8 @@ impl RemovalRules {
             region,
             keep_radius,
             smoke: Grid::new(periodic),
+            markers: Vec::new(),
+            sorted: Vec::new(),
             sinks: scene.sink.iter().map(|sink| RegionSink::new(sink, scene)).collect(),
             frame_time: 1.0 / scene.fps,
         })
@@ -75,8 +80,8 @@ impl RemovalRules {
     /// Collects the rows to remove at this time [s], in ascending order.
     pub fn find(&mut self, particles: &Particles, time: f64, parallelism: Parallelism, rows: &mut Vec<u32>) {
         rows.clear();
-        let smoke = self.sorted_smoke(particles, parallelism);
-        let gone = |row: usize| self.is_expired(particles, row) || self.is_abandoned(particles, row, &smoke);
+        self.sort_smoke(particles, parallelism);
+        let gone = |row: usize| self.is_expired(particles, row) || self.is_abandoned(particles, row);
         rows.extend((0..particles.len() as u32).filter(|&row| gone(row as usize)));
         self.drain(particles, time, rows);
     }
@@ -108,7 +113,7 @@ impl RemovalRules {
     }
 
     /// Gas with no smoke within its keep radius.
-    fn is_abandoned(&self, particles: &Particles, row: usize, smoke: &[Vector]) -> bool {
+    fn is_abandoned(&self, particles: &Particles, row: usize) -> bool {
         let rule = &self.materials[usize::from(particles.material[row])];
         let Some(radius) = rule.keep_radius else { return false };
         if is_scripted(particles, row) || particles.age[row] < rule.keep_age {
@@ -119,21 +124,23 @@ impl RemovalRules {
         let near = |marker: &Vector| periodic.min_image(x - *marker).length_squared() < limit;
         let mut found = false;
         self.smoke.for_each_run(x, radius, &mut Cursor::default(), |run| {
-            found = found || smoke[run.start as usize..run.end as usize].iter().any(near);
+            found = found || self.sorted[run.start as usize..run.end as usize].iter().any(near);
         });
         !found
     }
 
-    /// Smoke positions in the order of the grid, which is made for them.
-    fn sorted_smoke(&mut self, particles: &Particles, parallelism: Parallelism) -> Vec<Vector> {
+    /// Sorts the smoke into its grid, where anybody asks for it.
+    fn sort_smoke(&mut self, particles: &Particles, parallelism: Parallelism) {
         if self.keep_radius == 0.0 {
-            return Vec::new();
+            return;
         }
-        let is_smoke = |&row: &usize| particles.phase[row] == Phase::Smoke;
-        let smoke: Vec<Vector> =
-            (particles.dense()..particles.len()).filter(is_smoke).map(|row| particles.position[row]).collect();
-        let order = self.smoke.order(&smoke, smoke.len(), self.keep_radius, parallelism);
-        order.iter().map(|&row| smoke[row as usize]).collect()
+        let loose = particles.dense()..particles.len();
+        let smoke = loose.filter(|&row| particles.phase[row] == Phase::Smoke).map(|row| particles.position[row]);
+        self.markers.clear();
+        self.markers.extend(smoke);
+        let order = self.smoke.order(&self.markers, self.markers.len(), self.keep_radius, parallelism);
+        self.sorted.clear();
+        self.sorted.extend(order.iter().map(|&row| self.markers[row as usize]));
     }
 }
 

@@ -8,7 +8,8 @@ pub(super) const ROWS_BEHIND: usize = 3;
 pub(super) struct EmitterState {
     pub rng: u64,
     pub running: bool,
-    pub throttle: f64,
+    /// Mean of max(C, 0) ahead of the face, averaged over the way of the flow.
+    pub compression: f64,
     pub columns: Vec<ColumnState>,
 }
 
@@ -24,7 +25,7 @@ pub(super) struct ColumnState {
 impl EmitterState {
     /// The state as words.
     pub fn words(&self) -> Vec<u64> {
-        let mut words = vec![self.rng, u64::from(self.running), self.throttle.to_bits()];
+        let mut words = vec![self.rng, u64::from(self.running), self.compression.to_bits()];
         for column in &self.columns {
             words.push(column.progress.to_bits());
             words.extend(column.behind.map(u64::from));
@@ -36,7 +37,7 @@ impl EmitterState {
     pub fn from_words(words: &mut impl Iterator<Item = u64>, columns: usize) -> Option<Self> {
         let (rng, running) = (words.next()?, words.next()?);
         let part = |word: u64| Some(f64::from_bits(word)).filter(|part| (0.0..=1.0).contains(part));
-        let throttle = part(words.next()?)?;
+        let compression = part(words.next()?)?;
         let mut states = Vec::with_capacity(columns);
         for _ in 0..columns {
             let progress = part(words.next()?)?;
@@ -46,7 +47,7 @@ impl EmitterState {
             }
             states.push(ColumnState { progress, behind });
         }
-        Some(EmitterState { rng, running: running != 0, throttle, columns: states })
+        Some(EmitterState { rng, running: running != 0, compression, columns: states })
     }
 }
 
@@ -57,7 +58,7 @@ mod tests {
     #[test]
     fn words_give_the_same_emitter_back_and_nonsense_gives_none() {
         let column = ColumnState { progress: 0.25, behind: [7, 8, 9] };
-        let state = EmitterState { rng: 5, running: true, throttle: 0.5, columns: vec![column; 2] };
+        let state = EmitterState { rng: 5, running: true, compression: 0.5, columns: vec![column; 2] };
         let words = state.words();
         assert_eq!(EmitterState::from_words(&mut words.iter().copied(), 2), Some(state));
         assert_eq!(EmitterState::from_words(&mut words.iter().copied(), 3), None);

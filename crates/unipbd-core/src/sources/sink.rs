@@ -1,5 +1,6 @@
 //! Sinks: regions that take particles away.
 
+use super::injector::due_until;
 use crate::math::wide;
 use crate::particles::Particles;
 use crate::scene::{Region, Scene, Sink};
@@ -34,7 +35,7 @@ impl RegionSink {
         if self.rate.is_infinite() {
             return usize::MAX;
         }
-        let until = |time: f64| ((time - self.start).max(0.0) * self.rate).floor() as usize;
+        let until = |time: f64| due_until((time - self.start).max(0.0) * self.rate) as usize;
         until(time) - until(time - frame_time)
     }
 

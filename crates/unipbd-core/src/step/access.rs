@@ -79,6 +79,19 @@ impl Solver {
         self.world.density_errors()
     }
 
+    /// Constraint iterations of the last frame, all substeps together.
+    pub fn iterations(&self) -> u32 {
+        self.world.iterated
+    }
+
+    /// Pressure over density by row, from the multipliers of the last substep: lambda/(m dt^2) [m^2/s^2].
+    pub fn pressures(&self) -> Vec<f64> {
+        let (particles, dt) = (self.particles(), self.world.clock.dt);
+        let inverse = if dt > 0.0 { self.world.parts.pressure_scale / (dt * dt) } else { 0.0 };
+        let pressure = |row: usize| f64::from(particles.multiplier[row] * particles.inverse_mass[row]) * inverse;
+        (0..particles.len()).map(pressure).collect()
+    }
+
     /// Temperatures by row; empty when no material has one.
     pub fn temperatures(&self) -> &[Real] {
         self.particles().temperatures()

@@ -2,6 +2,7 @@
 
 use super::world::World;
 use super::{Solver, Stage};
+use crate::bodies::BodyKind;
 use crate::math::{Real, Vector64, wide};
 use crate::observe::{Diagnostics, GroupDiagnostics, MaterialDiagnostics};
 use crate::phase::Phase;
@@ -37,7 +38,7 @@ impl Solver {
 
 impl World {
     fn diagnostics(&self) -> Diagnostics {
-        let (clock, sums) = (&self.clock, self.sums());
+        let (clock, sums) = (&self.clock, self.sums().join(self.body_sums()));
         let materials = self.material_diagnostics();
         let fluids = || materials.iter().zip(&self.parts.materials).filter(|(_, material)| material.phase.is_fluid());
         let fluid_count: u64 = fluids().map(|(diagnostics, _)| diagnostics.count).sum();
@@ -54,7 +55,9 @@ impl World {
             frame: clock.frame,
             step: clock.step,
             substeps: clock.substeps,
-            iterations: clock.substeps * self.parts.iterations,
+            substeps_wanted: self.choice.wanted,
+            substeps_reason: self.choice.reason,
+            iterations: self.iterated,
             list_builds: clock.list_builds,
             count_by_phase,
             density_error_mean: if fluid_count > 0 { weighted / fluid_count as f64 } else { 0.0 },
@@ -66,6 +69,7 @@ impl World {
             momentum: sums.momentum,
             angular_momentum: sums.angular,
             speed_max: sums.speed_squared.sqrt(),
+            contact_penetration: self.contact_penetration(),
             groups: groups.collect(),
             materials,
         }
@@ -85,8 +89,31 @@ impl World {
         })
     }
 
+    fn body_sums(&self) -> Sums {
+        let gravity = wide(self.parts.gravity);
+        let bodies = self.parts.rigid.as_ref().map_or(&[][..], |rigid| rigid.views());
+        let moving = bodies.iter().filter(|body| body.kind == BodyKind::Dynamic);
+        moving.fold(Sums::default(), |sums, body| {
+            let (x, v, spin) = (body.position, body.velocity, body.angular_velocity);
+            // A body that never turns may have an infinite moment of inertia.
+            let turning = if spin == 0.0 { 0.0 } else { body.inertia * spin };
+            sums.join(Sums {
+                kinetic: 0.5 * (body.mass * v.length_squared() + turning * spin),
+                potential: -body.mass * gravity.dot(x),
+                momentum: v * body.mass,
+                angular: body.mass * x.perp_dot(v) + turning,
+                speed_squared: 0.0,
+            })
+        })
+    }
+
+    fn contact_penetration(&self) -> f64 {
+        let Some(rigid) = &self.parts.rigid else { return 0.0 };
+        rigid.contacts.points().map(|point| -point.gap).fold(0.0, f64::max)
+    }
+
     fn sums(&self) -> Sums {
-        let (particles, gravity) = (&self.parts.particles, wide(self.parts.gravity));
+        let (particles, forces) = (&self.parts.particles, &self.parts.forces);
         let leaf = |rows: std::ops::Range<usize>| {
             rows.fold(Sums::default(), |sums, row| {
                 let inverse_mass = f64::from(particles.inverse_mass[row]);
@@ -94,9 +121,12 @@ impl World {
                     return sums;
                 }
                 let (x, v, mass) = (wide(particles.position[row]), wide(particles.velocity[row]), 1.0 / inverse_mass);
+                // A force that follows the temperature has no potential.
+                let force = &forces[usize::from(particles.material[row])];
+                let acceleration = if force.thermal { Vector64::ZERO } else { wide(force.acceleration) };
                 sums.join(Sums {
                     kinetic: 0.5 * mass * v.length_squared(),
-                    potential: -mass * gravity.dot(x),
+                    potential: -mass * acceleration.dot(x),
                     momentum: v * mass,
                     angular: mass * x.perp_dot(v),
                     speed_squared: v.length_squared(),
@@ -139,6 +169,6 @@ impl World {
         let particles = &self.parts.particles;
         let pressure = |row: usize| particles.multiplier[row] * particles.inverse_mass[row];
         let largest = self.parts.parallelism.max(particles.dense(), pressure);
-        f64::from(largest.max(0.0)) / (self.clock.dt * self.clock.dt)
+        self.parts.pressure_scale * f64::from(largest.max(0.0)) / (self.clock.dt * self.clock.dt)
     }
 }

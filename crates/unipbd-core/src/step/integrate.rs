@@ -23,37 +23,31 @@ pub struct BodyForce {
 
 /// u = dt v + dt^2 a, x = x_n + u, for every row that has inertia; rows moved by a script keep their velocity.
 pub(super) fn predict(particles: &mut Particles, forces: &[BodyForce], dt: Real, parallelism: Parallelism) {
-    let (materials, phases) = (&particles.material, &particles.phase);
-    let (inverse_masses, temperatures) = (&particles.inverse_mass, &particles.temperature);
-    let accelerations = &particles.acceleration;
-    parallelism.update(&mut particles.velocity, |row, velocity| {
-        if inverse_masses[row] == 0.0 {
-            return;
+    let (material, phase, inverse_mass) = (&particles.material, &particles.phase, &particles.inverse_mass);
+    let (temperature, acceleration) = (&particles.temperature, &particles.acceleration);
+    let remainder = &particles.remainder;
+    let pulled = |row: usize, mut velocity: Vector| {
+        if inverse_mass[row] > 0.0 {
+            let force = &forces[usize::from(material[row])];
+            let factor = if force.thermal { temperature[row] } else { 1.0 };
+            velocity += force.acceleration * (factor * dt);
+            if let Some(&acceleration) = acceleration.get(row) {
+                velocity += acceleration * dt;
+            }
         }
-        let force = &forces[usize::from(materials[row])];
-        let factor = if force.thermal { temperatures[row] } else { 1.0 };
-        *velocity += force.acceleration * (factor * dt);
-        if let Some(&acceleration) = accelerations.get(row) {
-            *velocity += acceleration * dt;
-        }
-    });
-    particles.start.copy_from_slice(&particles.position);
-    let velocities = &particles.velocity;
-    parallelism.update(&mut particles.displacement, |row, displacement| {
-        if phases[row] != Phase::Smoke {
-            *displacement = velocities[row] * dt;
-        }
-    });
-    move_to_displacement(particles, parallelism);
-}
-
-/// x = x_n + (u + rem).
-fn move_to_displacement(particles: &mut Particles, parallelism: Parallelism) {
-    let (phases, starts) = (&particles.phase, &particles.start);
-    let (displacements, remainders) = (&particles.displacement, &particles.remainder);
-    parallelism.update(&mut particles.position, |row, position| {
-        if phases[row] != Phase::Smoke {
-            *position = starts[row] + (displacements[row] + remainders[row]);
+        velocity
+    };
+    let (velocity, start) = (&mut particles.velocity, &mut particles.start);
+    let (displacement, position) = (&mut particles.displacement, &mut particles.position);
+    parallelism.chunks4(velocity, start, displacement, position, |first, velocity, start, displacement, position| {
+        for k in 0..velocity.len() {
+            let row = first + k;
+            velocity[k] = pulled(row, velocity[k]);
+            start[k] = position[k];
+            if phase[row] != Phase::Smoke {
+                displacement[k] = velocity[k] * dt;
+                position[k] = start[k] + (displacement[k] + remainder[row]);
+            }
         }
     });
 }
@@ -61,19 +55,26 @@ fn move_to_displacement(particles: &mut Particles, parallelism: Parallelism) {
 /// Adds corrections to the displacements, keeps particles out of walls, moves positions along.
 pub(super) fn apply(particles: &mut Particles, corrections: &Corrections, walls: &Walls, parallelism: Parallelism) {
     let steps = corrections.displacements();
-    let (phases, starts) = (&particles.phase, &particles.start);
-    let (inverse_masses, remainders) = (&particles.inverse_mass, &particles.remainder);
-    parallelism.update(&mut particles.displacement, |row, displacement| {
-        if phases[row] == Phase::Smoke || inverse_masses[row] == 0.0 {
-            return;
-        }
-        *displacement += steps[row];
-        let position = starts[row] + (*displacement + remainders[row]);
-        for hit in walls.hits(position) {
-            *displacement += out_of_wall(*displacement, hit.normal, hit.depth, hit.friction);
+    let (phase, start) = (&particles.phase, &particles.start);
+    let (inverse_mass, remainder) = (&particles.inverse_mass, &particles.remainder);
+    let (displacement, position) = (&mut particles.displacement, &mut particles.position);
+    parallelism.chunks2(displacement, position, |first, displacement, position| {
+        for k in 0..displacement.len() {
+            let row = first + k;
+            if phase[row] == Phase::Smoke {
+                continue;
+            }
+            if inverse_mass[row] > 0.0 {
+                displacement[k] += steps[row];
+                let place = start[row] + (displacement[k] + remainder[row]);
+                for hit in walls.hits(place) {
+                    displacement[k] += out_of_wall(displacement[k], hit.normal, hit.depth, hit.friction);
+                }
+            }
+            // x = x_n + (u + rem).
+            position[k] = start[row] + (displacement[k] + remainder[row]);
         }
     });
-    move_to_displacement(particles, parallelism);
 }
 
 /// The way out of a wall, with Coulomb friction on the tangential part of the displacement.
@@ -87,17 +88,24 @@ fn out_of_wall(displacement: Vector, normal: Vector, depth: Real, friction: Real
     normal * depth - tangential * (friction * depth / length).min(1.0)
 }
 
-/// v = u/dt, and the new remainders; positions on a periodic axis return into the domain.
+/// v = u/dt, and the new remainders and ages; positions on a periodic axis return into the domain.
 pub(super) fn update_velocities(particles: &mut Particles, dt: Real, periodic: Periodic, parallelism: Parallelism) {
     let inverse_dt = 1.0 / dt;
-    let (phases, inverse_masses) = (&particles.phase, &particles.inverse_mass);
-    let displacements = &particles.displacement;
-    parallelism.update(&mut particles.velocity, |row, velocity| {
-        if phases[row] != Phase::Smoke && inverse_masses[row] > 0.0 {
-            *velocity = displacements[row] * inverse_dt;
+    let (phase, inverse_mass) = (&particles.phase, &particles.inverse_mass);
+    let (displacement, start, position) = (&particles.displacement, &particles.start, &particles.position);
+    parallelism.chunks2(&mut particles.velocity, &mut particles.remainder, |first, velocity, remainder| {
+        for k in 0..velocity.len() {
+            let row = first + k;
+            if phase[row] == Phase::Smoke {
+                continue;
+            }
+            if inverse_mass[row] > 0.0 {
+                velocity[k] = displacement[row] * inverse_dt;
+            }
+            remainder[k] = left_over(displacement[row], remainder[k], position[row] - start[row]);
         }
     });
-    carry_remainders(particles, parallelism);
+    parallelism.update(&mut particles.age, |_, age| *age += dt);
     wrap(particles, periodic, parallelism);
 }
 
@@ -107,9 +115,15 @@ pub(super) fn carry_remainders(particles: &mut Particles, parallelism: Paralleli
     let (starts, positions) = (&particles.start, &particles.position);
     parallelism.update(&mut particles.remainder, |row, remainder| {
         if phases[row] != Phase::Smoke {
-            *remainder = (displacements[row] + *remainder) - (positions[row] - starts[row]);
+            *remainder = left_over(displacements[row], *remainder, positions[row] - starts[row]);
         }
     });
+}
+
+/// The part of a displacement, and of what was left over before, that a position did not move by.
+#[inline(always)]
+fn left_over(displacement: Vector, remainder: Vector, moved: Vector) -> Vector {
+    (displacement + remainder) - moved
 }
 
 /// Brings positions on periodic axes back into the domain.

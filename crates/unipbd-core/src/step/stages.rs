@@ -3,8 +3,12 @@
 use super::integrate;
 use super::world::World;
 use super::{SolverError, Stage};
+use crate::constraints::ConstraintGroup;
+use crate::effects::Advected;
 use crate::math::{Real, wide};
 use crate::neighbors::Prepared;
+use crate::parallel::Parallelism;
+use crate::particles::Particles;
 
 /// Speed in spacings per frame beyond which a run has diverged.
 pub(crate) const ABSURD_SPEED: f64 = 1e6;
@@ -44,8 +48,9 @@ impl World {
         let (parts, clock) = (&mut self.parts, &self.clock);
         let Some(emitters) = &mut parts.emitters else { return };
         let changes = emitters.will_change(clock.time, clock.dt);
-        emitters.advance(clock.time, clock.dt, &mut parts.particles, &self.rows, &parts.neighbors);
-        if changes {
+        let added = emitters.advance(clock.time, clock.dt, &mut parts.particles, &self.rows, &parts.neighbors);
+        // The throttle may have opened since `changes` was asked for.
+        if changes || added > 0 {
             self.population_changed();
         }
     }
@@ -103,6 +108,12 @@ impl World {
                 group.project(World::now(&self.parts, &self.rows, &self.clock), &mut self.corrections);
                 self.take_up_corrections();
             }
+            self.iterated += 1;
+            // A violation is that of the positions the iteration started from.
+            let within = |group: &dyn ConstraintGroup| group.violation().unwrap_or(0.0) <= self.parts.tolerance;
+            if self.parts.tolerance > 0.0 && groups.iter().all(|group| within(group.as_ref())) {
+                break;
+            }
         }
         for columns in groups.iter().filter_map(|group| group.density()) {
             let particles = &mut self.parts.particles;
@@ -133,9 +144,6 @@ impl World {
         let parts = &mut self.parts;
         let (dt, periodic) = (self.clock.dt as Real, parts.neighbors.periodic());
         integrate::update_velocities(&mut parts.particles, dt, periodic, parts.parallelism);
-        for age in &mut parts.particles.age {
-            *age += dt;
-        }
         self.check_speeds()
     }
 
@@ -166,9 +174,10 @@ impl World {
     fn finish_groups(&mut self) {
         let mut groups = std::mem::take(&mut self.parts.groups);
         for group in &mut groups {
-            let mut velocities = self.parts.particles.velocity.clone();
-            group.finish_velocities(World::now(&self.parts, &self.rows, &self.clock), &mut velocities);
-            self.parts.particles.velocity = velocities;
+            // The group sees the velocities before its own changes.
+            self.velocities.clone_from(&self.parts.particles.velocity);
+            group.finish_velocities(World::now(&self.parts, &self.rows, &self.clock), &mut self.velocities);
+            std::mem::swap(&mut self.parts.particles.velocity, &mut self.velocities);
         }
         self.parts.groups = groups;
     }
@@ -197,11 +206,12 @@ impl World {
                 *velocity += changes.velocity[row];
             }
         });
-        for (row, change) in changes.temperature.iter().enumerate() {
+        let warmed = changes.temperature.len();
+        self.parts.parallelism.update(&mut particles.temperature[..warmed], |row, temperature| {
             if inverse_masses[row] > 0.0 {
-                particles.temperature[row] += change;
+                *temperature += changes.temperature[row];
             }
-        }
+        });
     }
 
     /// Makes the list hold for the positions as they are now.
@@ -219,26 +229,8 @@ impl World {
             self.refresh_neighbors();
         }
         let Some(mut smoke) = self.parts.smoke.take() else { return };
-        let now = World::now(&self.parts, &self.rows, &self.clock);
-        let particles = now.particles;
-        let dense = particles.dense();
-        let loose = particles.len() - dense;
-        let mut moved = vec![None; loose];
-        now.parallelism.update(&mut moved, |index, moved| {
-            let row = dense + index;
-            if particles.phase[row].is_passive() {
-                let (velocity, before) = (particles.velocity[row], particles.displacement[row]);
-                *moved = Some(smoke.advect(now, particles.position[row], velocity, before));
-            }
-        });
-        let particles = &mut self.parts.particles;
-        for (row, moved) in (dense..).zip(moved) {
-            let Some(moved) = moved else { continue };
-            particles.displacement[row] = particles.velocity[row];
-            particles.position[row] = moved.position;
-            particles.start[row] = moved.position;
-            particles.velocity[row] = moved.velocity;
-        }
+        let advected = smoke.advect(World::now(&self.parts, &self.rows, &self.clock));
+        take_up_smoke(&mut self.parts.particles, advected, self.parts.parallelism);
         smoke.set_last_dt(self.clock.dt as Real);
         self.parts.smoke = Some(smoke);
     }
@@ -254,4 +246,21 @@ impl World {
         integrate::carry_remainders(&mut self.parts.particles, self.parts.parallelism);
         integrate::wrap(&mut self.parts.particles, self.parts.neighbors.periodic(), self.parts.parallelism);
     }
+}
+
+/// Smoke takes up where it went; its displacement keeps the velocity of one substep ago.
+fn take_up_smoke(particles: &mut Particles, advected: &[Advected], parallelism: Parallelism) {
+    let dense = particles.dense();
+    let phase = &particles.phase[dense..];
+    let (position, start) = (&mut particles.position[dense..], &mut particles.start[dense..]);
+    let (velocity, displacement) = (&mut particles.velocity[dense..], &mut particles.displacement[dense..]);
+    parallelism.chunks4(position, start, velocity, displacement, |first, position, start, velocity, displacement| {
+        for k in 0..position.len() {
+            let (phase, now) = (phase[first + k], advected[first + k]);
+            if phase.is_passive() {
+                (displacement[k], velocity[k]) = (velocity[k], now.velocity);
+                (position[k], start[k]) = (now.position, now.position);
+            }
+        }
+    });
 }

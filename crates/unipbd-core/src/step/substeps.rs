@@ -1,16 +1,21 @@
 //! How many substeps a frame takes, and why.
 
-use crate::scene::{Scene, Substeps};
+use crate::kernel::Kernel;
+use crate::observe::SubstepReason;
+use crate::scene::{KernelKind, Scene, Substeps};
 
 /// Way per substep, in spacings, that the Courant-Friedrichs-Lewy condition allows.
 const COURANT: f64 = 0.4;
-/// Error constant D of C_max = (D/omega) P dt^2/dx^2 for Wendland C2 at h = 2.5 dx.
+/// Error constant D of C_max = (D/omega) P dt^2/dx^2, measured for Wendland C2 at h = 2.5 dx; for
+/// other kernels it follows the response of the rest lattice.
 const ERROR_CONSTANT: f64 = 0.335;
 /// Relaxation of liquids, omega.
 const RELAXATION: f64 = 0.5;
-
 /// Height of a stack of bodies that one substep per frame can carry.
 const BODIES_PER_SUBSTEP: f64 = 2.5;
+/// The number of substeps stays while at least this part of it is wanted, and falls no faster: each
+/// change of it changes the compression that carries a liquid, and rings through it.
+const KEPT: f64 = 0.75;
 
 /// What the choice follows from: a function of the state at the start of a frame alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -30,48 +35,81 @@ pub struct SubstepRule {
     cap: u32,
     target: f64,
     spacing: f64,
+    /// D/(omega K).
+    error: f64,
 }
 
 /// The choice for one frame.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Choice {
     /// Substeps to take.
     pub substeps: u32,
     /// Substeps that were wanted, where that is more.
     pub wanted: u32,
+    /// What decided.
+    pub reason: SubstepReason,
 }
 
 impl SubstepRule {
     /// The rule of a scene.
     pub fn new(scene: &Scene) -> Self {
+        let relaxation = scene.solver.relaxation.unwrap_or(RELAXATION);
+        let iterations = f64::from(scene.solver.iterations.max(1));
         SubstepRule {
             substeps: scene.solver.substeps,
             cap: scene.solver.max_substeps.max(1),
             target: scene.solver.target_compression,
             spacing: scene.spacing,
+            error: ERROR_CONSTANT * relative_response(scene) / (relaxation * iterations),
         }
     }
 
-    /// Substeps for a frame of this length [s].
+    /// Substeps for a frame of this length [s], the first of a run.
     pub fn choose(&self, frame: f64, demand: Demand) -> Choice {
-        match self.substeps {
-            Substeps::Fixed(count) => Choice { substeps: count.max(1), wanted: count.max(1) },
-            Substeps::Auto => {
-                let wanted = self.wanted(frame, demand).max(1.0).min(f64::from(u32::MAX)) as u32;
-                Choice { substeps: wanted.min(self.cap), wanted }
-            }
+        self.choose_after(0, frame, demand)
+    }
+
+    /// Substeps for a frame of this length [s] that follows one of `last` substeps.
+    pub fn choose_after(&self, last: u32, frame: f64, demand: Demand) -> Choice {
+        if let Substeps::Fixed(count) = self.substeps {
+            let count = count.max(1);
+            return Choice { substeps: count, wanted: count, reason: SubstepReason::Fixed };
+        }
+        let (wanted, reason) = self.wanted(frame, demand);
+        let wanted = wanted.ceil().max(1.0).min(f64::from(u32::MAX)) as u32;
+        let kept = f64::from(last) * KEPT;
+        if f64::from(wanted) >= f64::from(last) || last > self.cap {
+            Choice { substeps: wanted.min(self.cap), wanted, reason }
+        } else {
+            let substeps = if f64::from(wanted) >= kept { last } else { kept.floor().max(f64::from(wanted)) as u32 };
+            let reason = if substeps > wanted { SubstepReason::Hysteresis } else { reason };
+            Choice { substeps, wanted: substeps, reason }
         }
     }
 
-    /// The largest of four demands: the height of stacks, speed (CFL), trust region (the compression within one substep
-    /// stays below 0.2), and the target compression.
-    fn wanted(&self, frame: f64, demand: Demand) -> f64 {
-        let courant = frame * demand.speed / (COURANT * self.spacing);
-        let trust = 2.0 * frame * demand.pressure.sqrt() / self.spacing;
-        let accuracy = frame / self.spacing * (ERROR_CONSTANT / RELAXATION * demand.pressure / self.target).sqrt();
-        let support = demand.chain / BODIES_PER_SUBSTEP;
-        courant.max(trust).max(accuracy).max(support).ceil()
+    /// The largest of four demands: the height of stacks, speed (CFL), trust region (the compression
+    /// within one substep stays below 0.2), and the target compression.
+    fn wanted(&self, frame: f64, demand: Demand) -> (f64, SubstepReason) {
+        let root = (demand.pressure / self.target * self.error).sqrt();
+        let demands = [
+            (frame * demand.speed / (COURANT * self.spacing), SubstepReason::Speed),
+            (2.0 * frame * demand.pressure.sqrt() / self.spacing, SubstepReason::TrustRegion),
+            (frame / self.spacing * root, SubstepReason::Compression),
+            (demand.chain / BODIES_PER_SUBSTEP, SubstepReason::Support),
+        ];
+        demands.into_iter().fold((0.0, SubstepReason::Compression), |a, b| if b.0 > a.0 { b } else { a })
     }
+}
+
+/// The denominator of the density iteration at rest, over that of Wendland C2 at h = 2.5 dx.
+fn relative_response(scene: &Scene) -> f64 {
+    let response = |kind: KernelKind, radius: f64| {
+        let kernel = Kernel::of(kind, radius);
+        let sums = kernel.lattice(1.0);
+        let volume = 1.0 / (sums.value + f64::from(kernel.value(0.0)));
+        volume * volume * sums.gradient_squared
+    };
+    response(scene.solver.kernel, scene.solver.kernel_radius) / response(KernelKind::WendlandC2, 2.5)
 }
 
 #[cfg(test)]
@@ -99,6 +137,23 @@ mod tests {
     #[test]
     fn the_cap_binds_and_says_what_was_wanted() {
         let choice = rule().choose(1.0, Demand { speed: 1e4, ..Demand::default() });
-        assert_eq!(choice, Choice { substeps: 256, wanted: 250_000 });
+        assert_eq!((choice.substeps, choice.wanted, choice.reason), (256, 250_000, SubstepReason::Speed));
+    }
+
+    #[test]
+    fn the_number_rises_at_once_and_falls_slowly() {
+        let after = |last, speed| rule().choose_after(last, 1.0 / 60.0, Demand { speed, ..Demand::default() }).substeps;
+        assert_eq!(after(5, 24.0), 10);
+        assert_eq!(after(10, 23.0), 10, "a little less changes nothing");
+        assert_eq!(after(10, 2.4), 7, "much less is approached in steps");
+        assert_eq!(after(2, 0.0), 1, "and reached");
+    }
+
+    #[test]
+    fn the_demand_that_decides_is_named() {
+        let reason = |demand| rule().choose(1.0 / 60.0, demand).reason;
+        assert_eq!(reason(Demand { speed: 50.0, ..Demand::default() }), SubstepReason::Speed);
+        assert_eq!(reason(Demand { pressure: 30.0, ..Demand::default() }), SubstepReason::Compression);
+        assert_eq!(reason(Demand { chain: 100.0, ..Demand::default() }), SubstepReason::Support);
     }
 }

@@ -4,12 +4,12 @@ use std::sync::OnceLock;
 
 use super::integrate::BodyForce;
 use super::pipeline::{Features, pipeline};
-use super::substeps::{Demand, SubstepRule};
+use super::substeps::{Choice, Demand, SubstepRule};
 use super::timings::Timings;
 use super::{FrameReport, SolverError, Stage};
 use crate::constraints::{ConstraintGroup, Corrections, Needs, Substep};
 use crate::effects::{Changes, Effect, SmokeAdvection};
-use crate::math::{Real, Vector, wide};
+use crate::math::{Real, Vector, Vector64, wide};
 use crate::neighbors::{Cover, Neighbors, SavedList};
 use crate::observe::{Event, Material, Severity};
 use crate::parallel::Parallelism;
@@ -36,6 +36,11 @@ pub(crate) struct Parts {
     pub removal: Option<RemovalRules>,
     pub substeps: SubstepRule,
     pub iterations: u32,
+    /// Violation of every group at which the iteration stops.
+    pub tolerance: f64,
+    /// Pressure over density per multiplier, inverse mass and squared substep: the gradient of the
+    /// rest lattice falls a little short, and the multipliers are as much too large.
+    pub pressure_scale: f64,
     pub gravity: Vector,
     pub spacing: f64,
     pub frame_time: f64,
@@ -45,6 +50,9 @@ pub(crate) struct Parts {
 
 /// Pressures up to this many times what depth and speed account for are believed.
 const PRESSURE_MARGIN: f64 = 8.0;
+/// The pressure of the multipliers decides the number of substeps only where it is this many times the
+/// expected one: they rise when the number changes, and must not change it in turn.
+const UNEXPECTED: f64 = 1.5;
 /// Speed, in spacings per frame, that a compressed liquid may always reach.
 const LEAST_SPEED: f64 = 2.0;
 
@@ -96,6 +104,12 @@ pub(crate) struct World {
     pub(super) measured: OnceLock<Vec<Real>>,
     pub(super) corrections: Corrections,
     pub(super) changes: Changes,
+    /// Room for the velocities that groups change.
+    pub(super) velocities: Vec<Vector>,
+    /// Why the last frame took the substeps it took.
+    pub(super) choice: Choice,
+    /// Iterations of the frame so far.
+    pub(super) iterated: u32,
     removed: Vec<u32>,
     pub(super) needs_rows: bool,
 }
@@ -112,6 +126,9 @@ impl World {
             measured: OnceLock::new(),
             corrections: Corrections::default(),
             changes: Changes::default(),
+            velocities: Vec::new(),
+            choice: Choice::default(),
+            iterated: 0,
             removed: Vec::new(),
             needs_rows: false,
         };
@@ -167,6 +184,7 @@ impl World {
         let mut removed = 0;
         if self.clock.done == 0 {
             removed = self.remove();
+            self.iterated = 0;
             self.clock.substeps = self.choose_substeps();
             self.clock.pressure_limit = self.pressure_limit();
             self.clock.dt = self.parts.frame_time / f64::from(self.clock.substeps);
@@ -267,7 +285,7 @@ impl World {
 
     fn choose_substeps(&mut self) -> u32 {
         let demand = self.demand();
-        let choice = self.parts.substeps.choose(self.parts.frame_time, demand);
+        let choice = self.parts.substeps.choose_after(self.clock.substeps, self.parts.frame_time, demand);
         let capped = choice.wanted > choice.substeps;
         if capped && !self.clock.capped {
             let message = format!(
@@ -278,6 +296,7 @@ impl World {
             self.events.push(Event { time: self.clock.time, severity: Severity::Warning, message });
         }
         self.clock.capped = capped;
+        self.choice = choice;
         choice.substeps
     }
 
@@ -287,7 +306,8 @@ impl World {
         let emitted = parts.emitters.as_ref().map_or(0.0, |emitters| emitters.speed_max(self.clock.time));
         let moving = if self.clock.step == 0 { self.fastest() } else { self.clock.speed };
         let chain = parts.rigid.as_ref().map_or(0.0, |rigid| rigid.support_chain(wide(parts.gravity)));
-        Demand { speed: moving.max(emitted), chain, pressure: self.depth_pressure().max(self.multiplier_pressure()) }
+        let expected = self.depth_pressure().max(self.dynamic_pressure());
+        Demand { speed: moving.max(emitted), chain, pressure: expected.max(self.multiplier_pressure() / UNEXPECTED) }
     }
 
     fn fastest(&self) -> f64 {
@@ -341,6 +361,21 @@ impl World {
         let dynamic = 0.5 * (sum / count.max(1.0)).sqrt();
         let least = LEAST_SPEED * self.parts.spacing / self.parts.frame_time;
         PRESSURE_MARGIN * (self.depth_pressure() + dynamic) + least * least
+    }
+
+    /// Pressure over density that the motion of the liquids within themselves can bring about
+    /// [m^2/s^2]: the square of their speed relative to the mean one, as the fourth root of its mean
+    /// fourth power.
+    fn dynamic_pressure(&self) -> f64 {
+        let velocities = &self.parts.particles.velocity;
+        let (x, count) = self.over_liquids(|row| f64::from(velocities[row].x));
+        let (y, _) = self.over_liquids(|row| f64::from(velocities[row].y));
+        let mean = Vector64::new(x, y) / count.max(1.0);
+        let (sum, count) = self.over_liquids(|row| {
+            let square = (wide(velocities[row]) - mean).length_squared();
+            square * square
+        });
+        (sum / count.max(1.0)).sqrt()
     }
 
     /// Sum of a value over the liquid particles, and their number.

@@ -3,7 +3,7 @@
 use super::Coverage;
 use crate::math::{Real, Vector, Vector64, real, vector};
 use crate::observe::WallOutline;
-use crate::scene::{HalfPlane, Obstacle, Scene, Side, Tank};
+use crate::scene::{HalfPlane, Obstacle, Scene, Side, Slip, Tank};
 
 /// How deep a point is inside a wall, and the way out.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -16,11 +16,22 @@ pub struct Hit {
     pub friction: Real,
 }
 
+/// What a wall without slip does to a viscous fluid at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Shear {
+    /// Twice the marginal of the kernel at the wall over the distance to it [1/m^2].
+    pub rate: Real,
+    /// Velocity of the wall [m/s].
+    pub velocity: Vector,
+}
+
 #[derive(Clone, Copy, Debug)]
 struct Plane {
     point: Vector,
     normal: Vector,
     friction: Real,
+    slip: Slip,
+    velocity: Vector,
 }
 
 /// Where two walls of a tank meet: the part behind both is counted once, not twice.
@@ -36,6 +47,7 @@ struct Rectangle {
     min: Vector,
     max: Vector,
     friction: Real,
+    slip: Slip,
 }
 
 /// All static walls of a scene.
@@ -101,6 +113,33 @@ impl Walls {
         planes.chain(self.rectangles.iter().filter_map(move |rectangle| rectangle.hit(x)))
     }
 
+    /// Whether any wall holds a viscous fluid back.
+    pub fn any_without_slip(&self) -> bool {
+        let planes = self.planes.iter().map(|plane| plane.slip);
+        planes.chain(self.rectangles.iter().map(|rectangle| rectangle.slip)).any(|slip| slip == Slip::None)
+    }
+
+    /// The walls without slip that a kernel at `x` reaches; distances count as at least `least`.
+    ///
+    /// The velocity goes on linearly behind the wall, so that it is the wall's at the wall (Morris et
+    /// al. 1997). Integrated over the half-plane, the Laplacian of Brookshaw 1985 then is
+    /// 2 (v_wall - v) M(d)/d, with M the marginal of the kernel at the distance d.
+    pub fn shears<'a>(&'a self, x: Vector, least: Real, coverage: &'a Coverage) -> impl Iterator<Item = Shear> + 'a {
+        let planes = self.planes.iter().filter(|plane| plane.slip == Slip::None).filter_map(move |plane| {
+            let distance = (x - plane.point).dot(plane.normal);
+            let marginal = -coverage.behind(distance.max(0.0)).1;
+            let near = distance < coverage.radius();
+            near.then(|| Shear { rate: 2.0 * marginal / distance.max(least), velocity: plane.velocity })
+        });
+        let rectangles = self.rectangles.iter().filter(|rectangle| rectangle.slip == Slip::None);
+        let rectangles = rectangles.filter_map(move |rectangle| {
+            let distance = (x - x.clamp(rectangle.min, rectangle.max)).length();
+            let marginal = rectangle.coverage(x, coverage).1.length();
+            (marginal > 0.0).then(|| Shear { rate: 2.0 * marginal / distance.max(least), velocity: Vector::ZERO })
+        });
+        planes.chain(rectangles)
+    }
+
     /// Moves a point out of all walls.
     pub fn clamp(&self, mut x: Vector) -> Vector {
         for plane in &self.planes {
@@ -118,7 +157,15 @@ impl Walls {
 
     fn add_half_plane(&mut self, wall: &HalfPlane) {
         let (point, normal) = (Vector64::from(wall.point), Vector64::from(wall.normal).normalize());
-        self.push_plane(point, normal, wall.friction);
+        let velocity = Vector64::from(wall.velocity);
+        let along = velocity - normal * velocity.dot(normal);
+        self.planes.push(Plane {
+            point: vector(point),
+            normal: vector(normal),
+            friction: real(wall.friction),
+            slip: wall.slip,
+            velocity: vector(along),
+        });
         let along = normal.perp() * 1e3;
         self.outlines.push(WallOutline { points: vec![point + along, point - along], closed: false, endless: true });
     }
@@ -134,7 +181,13 @@ impl Walls {
         let closed = |side: Side| !tank.open.contains(&side);
         for (side, point, normal) in sides {
             if closed(side) {
-                self.push_plane(point, normal, tank.friction);
+                self.planes.push(Plane {
+                    point: vector(point),
+                    normal: vector(normal),
+                    friction: real(tank.friction),
+                    slip: tank.slip,
+                    velocity: Vector::ZERO,
+                });
             }
         }
         for (horizontal, x, sign_x) in [(Side::Left, min.x, -1.0), (Side::Right, max.x, 1.0)] {
@@ -150,14 +203,15 @@ impl Walls {
 
     fn add_obstacle(&mut self, obstacle: &Obstacle) {
         let (min, max) = (Vector64::from(obstacle.min), Vector64::from(obstacle.max));
-        self.rectangles.push(Rectangle { min: vector(min), max: vector(max), friction: real(obstacle.friction) });
+        self.rectangles.push(Rectangle {
+            min: vector(min),
+            max: vector(max),
+            friction: real(obstacle.friction),
+            slip: obstacle.slip,
+        });
         let mut points = ring(min, max).to_vec();
         points.reverse();
         self.outlines.push(WallOutline { points, closed: true, endless: false });
-    }
-
-    fn push_plane(&mut self, point: Vector64, normal: Vector64, friction: f64) {
-        self.planes.push(Plane { point: vector(point), normal: vector(normal), friction: real(friction) });
     }
 }
 
@@ -233,7 +287,7 @@ mod tests {
     use crate::kernel::Kernel;
 
     fn tank(open: Vec<Side>) -> Walls {
-        let tank = Tank { min: [0.0, 0.0], max: [10.0, 8.0], open, friction: 0.0 };
+        let tank = Tank { min: [0.0, 0.0], max: [10.0, 8.0], open, friction: 0.0, slip: Slip::Free };
         Walls::new(&Scene { tank: vec![tank], ..Scene::default() })
     }
 
@@ -270,7 +324,7 @@ mod tests {
 
     #[test]
     fn obstacle_covers_its_rectangle() {
-        let obstacle = Obstacle { min: [1.0, 1.0], max: [2.0, 4.0], friction: 0.0 };
+        let obstacle = Obstacle { min: [1.0, 1.0], max: [2.0, 4.0], friction: 0.0, slip: Slip::Free };
         let walls = Walls::new(&Scene { obstacle: vec![obstacle], ..Scene::default() });
         let kernel = Kernel::new(2.5);
         let coverage = Coverage::new(&kernel);

@@ -1,23 +1,29 @@
 use crate::kernel::Kernel;
 use crate::math::{Real, real};
 use crate::phase::Phase;
-use crate::scene::{GradientPoint, MaterialRef, Scene};
+use crate::scene::{GradientPoint, KernelKind, MaterialRef, Scene};
 
 /// Settings of the density group.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DensitySettings {
+    /// Smoothing kernel.
+    pub kernel: KernelKind,
     /// Kernel radius h [m].
     pub kernel_radius: f64,
     /// Particle spacing dx [m].
     pub spacing: f64,
     /// What one neighbour counts: its volume, scaled so that the rest lattice reads 1 [m^2].
     pub volume: Real,
+    /// -sum of y dW/dy over the rest lattice [1/m^2].
+    pub moment: f64,
     /// Where gradients are taken.
     pub gradients: GradientPoint,
     /// The inverse mass of all dense particles, where they have but one [1/kg].
     pub uniform_inverse_mass: Option<Real>,
     /// Pair repulsion, where any material has it.
     pub repulsion: Option<Repulsion>,
+    /// Artificial pressure of Macklin & Müller 2013 [m^2]; 0 is none.
+    pub artificial_pressure: Real,
     /// Per material.
     pub materials: Vec<DensityMaterial>,
 }
@@ -33,6 +39,13 @@ pub struct DensityMaterial {
     pub gate: Real,
     /// Floor of the denominator [1/(kg m^2)]: keeps thin places from being thrown about.
     pub response_min: Real,
+    /// Mass of a particle whose pressure is limited [kg]; 0 where it is not.
+    pub limited_mass: Real,
+    /// Added to the denominator: constraint force mixing [1/(kg m^2)].
+    pub mixing: Real,
+    /// The same for particles moved by a script, whose own response is missing from the denominator: what
+    /// they barely touch must not be thrown [1/(kg m^2)].
+    pub scripted_response_min: Real,
     /// Repulsion strength; the product of two, times an inverse mass, is the part of its overlap that
     /// a pair gives back per substep [kg^1/2].
     pub repulsion: Real,
@@ -49,6 +62,8 @@ pub struct Repulsion {
 const GAS_GATE: f64 = -0.3;
 /// The denominator of a gas particle is at least this part of its value at rest.
 const GAS_RESPONSE_FLOOR: f64 = 0.5;
+/// That of a particle moved by a script, of any fluid, is at least this part of its value at rest.
+const SCRIPTED_RESPONSE_FLOOR: f64 = 0.5;
 /// Gas particles nearer than this many spacings repel each other...
 const REPULSION_REACH: f64 = 0.8;
 /// ...by this part of their overlap per substep.
@@ -62,18 +77,22 @@ impl DensitySettings {
     /// The settings a scene asks for.
     pub fn new(scene: &Scene) -> Self {
         let radius = scene.solver.kernel_radius * scene.spacing;
-        let kernel = Kernel::new(radius);
+        let kernel = Kernel::of(scene.solver.kernel, radius);
         let sums = kernel.lattice(scene.spacing);
         let volume = 1.0 / (sums.value + f64::from(kernel.value(0.0)));
         let rest_response = volume * volume * sums.gradient_squared;
-        let default_gradients = if scene.gas.is_empty() { GradientPoint::Predicted } else { GradientPoint::Start };
+        let two_sided = scene.materials().any(|material| material.is_two_sided());
+        let default_gradients = if two_sided { GradientPoint::Start } else { GradientPoint::Predicted };
         DensitySettings {
+            kernel: scene.solver.kernel,
             kernel_radius: radius,
             spacing: scene.spacing,
             volume: real(volume),
+            moment: sums.moment,
             gradients: scene.solver.gradients.unwrap_or(default_gradients),
             uniform_inverse_mass: uniform_mass(scene).map(|mass| real(1.0 / mass)),
-            repulsion: (!scene.gas.is_empty()).then(|| Repulsion { reach: real(REPULSION_REACH * scene.spacing) }),
+            artificial_pressure: real(scene.solver.artificial_pressure * scene.spacing * scene.spacing),
+            repulsion: two_sided.then(|| Repulsion { reach: real(REPULSION_REACH * scene.spacing) }),
             materials: scene.materials().map(|material| DensityMaterial::new(material, scene, rest_response)).collect(),
         }
     }
@@ -82,30 +101,51 @@ impl DensitySettings {
 impl DensityMaterial {
     fn new(material: MaterialRef<'_>, scene: &Scene, rest_response: f64) -> Self {
         let mass = material.density() * scene.spacing * scene.spacing;
-        // The lightest gas sets the force of a pair: it gives back the full part, a heavier one less.
-        let lightest = scene.gas.iter().map(|gas| gas.density).fold(f64::INFINITY, f64::min);
+        // The lightest sets the force of a pair: it gives back the full part, a heavier one less.
+        let two_sided = scene.materials().filter(|material| material.is_two_sided());
+        let lightest = two_sided.map(|material| material.density()).fold(f64::INFINITY, f64::min);
         let lightest = lightest * scene.spacing * scene.spacing;
+        let mixing = real(scene.solver.constraint_mixing * rest_response / mass);
         let relaxation = |default: f64| real(scene.solver.relaxation.unwrap_or(default));
         match material.phase() {
+            Phase::Liquid if material.is_two_sided() => DensityMaterial {
+                relaxation: relaxation(GAS_RELAXATION),
+                multiplier_min: Real::NEG_INFINITY,
+                gate: Real::NEG_INFINITY,
+                response_min: real(GAS_RESPONSE_FLOOR * rest_response / mass),
+                scripted_response_min: real(SCRIPTED_RESPONSE_FLOOR * rest_response / mass),
+                mixing,
+                limited_mass: real(mass),
+                repulsion: real((GAS_REPULSION * lightest).sqrt()),
+            },
             Phase::Liquid => DensityMaterial {
+                mixing,
+                limited_mass: real(mass),
                 relaxation: relaxation(LIQUID_RELAXATION),
                 multiplier_min: 0.0,
                 gate: Real::NEG_INFINITY,
                 response_min: real(1e-6 * rest_response / mass),
+                scripted_response_min: real(SCRIPTED_RESPONSE_FLOOR * rest_response / mass),
                 repulsion: 0.0,
             },
             Phase::Gas => DensityMaterial {
+                mixing,
+                limited_mass: 0.0,
                 relaxation: relaxation(GAS_RELAXATION),
                 multiplier_min: Real::NEG_INFINITY,
                 gate: real(GAS_GATE),
                 response_min: real(GAS_RESPONSE_FLOOR * rest_response / mass),
+                scripted_response_min: real(SCRIPTED_RESPONSE_FLOOR * rest_response / mass),
                 repulsion: real((GAS_REPULSION * lightest).sqrt()),
             },
             Phase::Smoke | Phase::Rigid | Phase::Solid => DensityMaterial {
+                mixing: 0.0,
+                limited_mass: 0.0,
                 relaxation: 0.0,
                 multiplier_min: 0.0,
                 gate: Real::NEG_INFINITY,
                 response_min: 1.0,
+                scripted_response_min: 1.0,
                 repulsion: 0.0,
             },
         }

@@ -2,19 +2,23 @@
 
 use super::{Density, DensityMaterial};
 use crate::constraints::{Corrections, Substep};
-use crate::math::Real;
+use crate::math::{Real, Vector};
 use crate::phase::Phase;
 use crate::scene::GradientPoint;
-use crate::simd::{self, DensityInput, DensityOutput, Weights};
+use crate::simd::near::{self, Near, Work};
+use crate::simd::space::{Open, Space, Wrapped};
+use crate::simd::weigh::{At, Weighed};
+use crate::simd::{self, DensityInput, DensityOutput, Level, Shape, Tensile, Weights};
+use crate::walls::Coverage;
 
 impl Density {
     /// Pass 1: sums of the kernel, its gradient and the response of the neighbours.
     pub(super) fn sum_kernels(&mut self, now: Substep<'_>) {
-        let positions = now.particles.positions();
+        let gradients = self.settings.gradients;
         let input = DensityInput {
-            positions,
-            gradient_positions: match self.settings.gradients {
-                GradientPoint::Predicted => None,
+            positions: Density::value_positions(gradients, &self.middle, now),
+            gradient_positions: match gradients {
+                GradientPoint::Predicted | GradientPoint::Middle => None,
                 GradientPoint::Start => Some(now.particles.starts()),
             },
             weights: match self.settings.uniform_inverse_mass {
@@ -24,51 +28,55 @@ impl Density {
         };
         let sums = &mut self.sums;
         let out = DensityOutput { value: &mut sums.value, gradient: &mut sums.gradient, response: &mut sums.response };
-        simd::density(now.pairs(), self.kernel.shape(), input, out);
+        match self.kernel.alternative() {
+            None => simd::density(now.pairs(), self.kernel.shape(), input, out),
+            Some(other) => simd::density(now.pairs(), other, input, out),
+        }
     }
 
     /// Pass 2: density errors and the relaxed step of each multiplier.
     pub(super) fn step_multipliers(&mut self, now: Substep<'_>) {
         let volume = self.settings.volume;
         let own = volume * self.kernel.value(0.0);
-        let (sums, coverage, materials) = (&self.sums, &self.coverage, &self.settings.materials);
-        let positions = now.particles.positions();
-        let gradient_positions = self.gradient_positions(now);
-        let (errors, walls) = (&mut self.error, &mut self.wall_gradient);
-        now.parallelism.chunks2(errors, walls, |first, errors, walls| {
-            for k in 0..errors.len() {
-                let i = first + k;
-                let fluid = volume * sums.value[i] + own - 1.0;
-                if now.walls.is_empty() {
-                    errors[k] = fluid;
-                } else {
-                    errors[k] = fluid + now.walls.coverage(positions[i], coverage).0;
-                    walls[k] = now.walls.coverage(gradient_positions[i], coverage).1;
-                }
-            }
-        });
-        let (errors, walls) = (&self.error, &self.wall_gradient);
-        let inverse_masses = now.particles.inverse_masses();
-        let material_of = now.particles.materials();
+        let gradients = self.settings.gradients;
+        let behind_walls = BehindWalls {
+            now,
+            coverage: &self.coverage,
+            positions: Density::value_positions(gradients, &self.middle, now),
+            gradient_positions: match gradients {
+                GradientPoint::Start => Some(now.particles.starts()),
+                GradientPoint::Predicted | GradientPoint::Middle => None,
+            },
+        };
         let limit = now.pressure_limit * now.dt * now.dt;
-        now.parallelism.chunks2(&mut self.step, &mut self.multiplier, |first, steps, multipliers| {
-            for k in 0..steps.len() {
+        let (sums, materials) = (&self.sums, &self.settings.materials);
+        let (inverse_mass, material_of) = (now.particles.inverse_masses(), now.particles.materials());
+        let (error, wall, step, multiplier) =
+            (&mut self.error, &mut self.wall_gradient, &mut self.step, &mut self.multiplier);
+        now.parallelism.chunks4(error, wall, step, multiplier, |first, error, wall, step, multiplier| {
+            for k in 0..error.len() {
                 let i = first + k;
-                let gradient = sums.gradient[i] * volume + walls[i];
-                let response = inverse_masses[i] * gradient.length_squared() + volume * volume * sums.response[i];
+                let (part, slope) = behind_walls.at(i);
+                error[k] = volume * sums.value[i] + own - 1.0 + part;
+                wall[k] = slope;
+                let gradient = sums.gradient[i] * volume + slope;
+                let response = inverse_mass[i] * gradient.length_squared() + volume * volume * sums.response[i];
                 let material = &materials[usize::from(material_of[i])];
-                let new = material.multiplier(multipliers[k], errors[i], response, inverse_masses[i], limit);
-                steps[k] = new - multipliers[k];
-                multipliers[k] = new;
+                let new = material.multiplier(multiplier[k], error[k], response, inverse_mass[i], limit);
+                step[k] = new - multiplier[k];
+                multiplier[k] = new;
             }
         });
     }
 
     /// Pass 3: displacements, gathered per row, so that momentum is kept with unequal masses too.
     pub(super) fn correct(&mut self, now: Substep<'_>, out: &mut Corrections) {
-        let positions = self.gradient_positions(now);
+        let positions = Density::gradient_positions(self.settings.gradients, &self.middle, now);
         let sums = &mut self.sums.gradient;
-        simd::correction(now.pairs(), self.kernel.shape(), positions, &self.step, sums);
+        match self.kernel.alternative() {
+            None => simd::correction(now.pairs(), self.kernel.shape(), positions, &self.step, sums),
+            Some(other) => simd::correction(now.pairs(), other, positions, &self.step, sums),
+        }
         let (sums, steps, walls) = (&self.sums.gradient, &self.step, &self.wall_gradient);
         let (volume, inverse_masses) = (self.settings.volume, now.particles.inverse_masses());
         let rows = now.particles.dense();
@@ -93,13 +101,38 @@ impl Density {
         let (materials, material_of) = (&self.settings.materials, now.particles.materials());
         self.strength.resize(now.particles.dense(), 0.0);
         now.parallelism.fill(&mut self.strength, |i| materials[usize::from(material_of[i])].repulsion);
-        let positions = self.gradient_positions(now);
+        let positions = Density::gradient_positions(self.settings.gradients, &self.middle, now);
         let (reach, strengths) = (repulsion.reach, Weights::Column(&self.strength));
         simd::repulsion(now.pairs(), reach, positions, strengths, &mut self.sums.gradient);
         let (sums, strength) = (&self.sums.gradient, &self.strength);
         let inverse_masses = now.particles.inverse_masses();
         now.parallelism.update(&mut out.displacements_mut()[..strength.len()], |i, displacement| {
             *displacement += sums[i] * (strength[i] * inverse_masses[i]);
+        });
+    }
+
+    /// The artificial pressure of Macklin & Müller 2013 (equations 13 and 14): liquids alone.
+    pub(super) fn press_apart(&mut self, now: Substep<'_>, out: &mut Corrections) {
+        let pressure = self.settings.artificial_pressure;
+        if pressure == 0.0 {
+            return;
+        }
+        let (inverse_masses, phases) = (now.particles.inverse_masses(), now.particles.phases());
+        now.parallelism.fill(&mut self.step, |i| match phases[i] {
+            Phase::Liquid if inverse_masses[i] > 0.0 => 0.5 * pressure / inverse_masses[i],
+            _ => 0.0,
+        });
+        let positions = Density::gradient_positions(self.settings.gradients, &self.middle, now);
+        let (sums, reference) = (&mut self.sums.gradient, 0.2 * self.settings.kernel_radius);
+        match self.kernel.alternative() {
+            None => {
+                simd::correction(now.pairs(), Tensile::new(self.kernel.shape(), reference), positions, &self.step, sums)
+            }
+            Some(other) => simd::correction(now.pairs(), Tensile::new(other, reference), positions, &self.step, sums),
+        }
+        let (sums, volume) = (&self.sums.gradient, self.settings.volume);
+        now.parallelism.update(&mut out.displacements_mut()[..now.particles.dense()], |i, displacement| {
+            *displacement -= sums[i] * (volume * inverse_masses[i]);
         });
     }
 }
@@ -109,21 +142,83 @@ impl Density {
     /// made for other positions.
     pub(super) fn measure(&self, now: Substep<'_>) -> Vec<Real> {
         let particles = now.particles;
-        let (positions, periodic) = (particles.positions(), now.neighbors.periodic());
-        let (radius, volume) = (self.kernel.radius(), self.settings.volume);
         let mut errors = vec![0.0; particles.len()];
-        now.parallelism.update(&mut errors[..particles.dense()], |row, error| {
-            if !particles.phases()[row].is_fluid() {
-                return;
-            }
-            let x = positions[row];
-            let mut sum = 0.0;
-            now.neighbors.for_each_near(x, radius, |other| {
-                sum += self.kernel.value(periodic.min_image(x - positions[other]).length());
-            });
-            *error = volume * sum + now.walls.coverage(x, &self.coverage).0 - 1.0;
-        });
+        match self.kernel.alternative() {
+            None => self.measure_with(self.kernel.shape(), now, &mut errors[..particles.dense()]),
+            Some(shape) => self.measure_with(shape, now, &mut errors[..particles.dense()]),
+        }
         errors
+    }
+
+    fn measure_with(&self, shape: impl Shape, now: Substep<'_>, errors: &mut [Real]) {
+        let periodic = now.neighbors.periodic();
+        now.parallelism.chunks(errors, |first, out| {
+            if periodic.any() {
+                let space = Wrapped::new(periodic);
+                near::dispatch(Level::best(), Measured { density: self, shape, now, space, first, out });
+            } else {
+                near::dispatch(Level::best(), Measured { density: self, shape, now, space: Open, first, out });
+            }
+        });
+    }
+}
+
+/// Density errors of the rows from `first` on, measured by one task.
+struct Measured<'a, S, K> {
+    density: &'a Density,
+    shape: K,
+    now: Substep<'a>,
+    space: S,
+    first: usize,
+    out: &'a mut [Real],
+}
+
+impl<S: Space, K: Shape> Work for Measured<'_, S, K> {
+    #[inline(always)]
+    fn run<N: Near>(self, near: N) {
+        let Measured { density, shape, now, space, first, out } = self;
+        let particles = now.particles;
+        let positions = &particles.positions()[..particles.dense()];
+        let scale = density.settings.volume * shape.value_scale();
+        for (row, out) in (first..).zip(out) {
+            if !particles.phases()[row].is_fluid() {
+                continue;
+            }
+            let point = positions[row];
+            // Only the weights are asked for: any column will do for the vectors.
+            let at = At { space, kernel: shape, point, positions, vectors: positions };
+            let mut sums = Weighed::default();
+            // No closure here: it would miss the instruction set.
+            for run in now.neighbors.runs_near(point).iter() {
+                near.weigh(&at, run, &mut sums);
+            }
+            *out = scale * sums.weight() + now.walls.coverage(point, &density.coverage).0 - 1.0;
+        }
+    }
+}
+
+/// The part of the kernel inside walls, row by row.
+struct BehindWalls<'a> {
+    now: Substep<'a>,
+    coverage: &'a Coverage,
+    positions: &'a [Vector],
+    /// Where gradients are taken, if not at `positions`.
+    gradient_positions: Option<&'a [Vector]>,
+}
+
+impl BehindWalls<'_> {
+    /// The part where the density is taken, and its gradient where gradients are taken [1/m].
+    #[inline]
+    fn at(&self, row: usize) -> (Real, Vector) {
+        let walls = self.now.walls;
+        if walls.is_empty() {
+            return (0.0, Vector::ZERO);
+        }
+        let (part, slope) = walls.coverage(self.positions[row], self.coverage);
+        match self.gradient_positions {
+            None => (part, slope),
+            Some(positions) => (part, walls.coverage(positions[row], self.coverage).1),
+        }
     }
 }
 
@@ -137,8 +232,9 @@ impl DensityMaterial {
         // A particle moved by a script may push, never pull: its own response is missing from the
         // denominator.
         let least = if inverse_mass == 0.0 { 0.0 } else { self.multiplier_min };
-        let new = (old + self.relaxation * error / response.max(self.response_min)).max(least);
+        let floor = if inverse_mass == 0.0 { self.scripted_response_min } else { self.response_min };
+        let new = (old + self.relaxation * error / (response.max(floor) + self.mixing)).max(least);
         // What is squeezed in with no way out must not push harder the shorter the substep is.
-        if self.multiplier_min == 0.0 && inverse_mass > 0.0 { new.min(limit / inverse_mass) } else { new }
+        if self.limited_mass > 0.0 { new.clamp(-limit * self.limited_mass, limit * self.limited_mass) } else { new }
     }
 }

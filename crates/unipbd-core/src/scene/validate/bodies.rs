@@ -6,7 +6,6 @@ use super::checker::{Allowed, Checker, number};
 use super::materials::excerpt;
 use super::motion;
 use crate::bodies::BodyKind;
-use crate::build::{body_copies, body_shape};
 use crate::scene::{BodyDescription, KeyPath, Side, Tank};
 
 /// More bodies than this are refused.
@@ -63,7 +62,7 @@ fn check_shape(checker: &mut Checker, path: KeyPath, body: &BodyDescription) -> 
     if let Some(radius) = body.radius {
         return checker.range(path, radius, Allowed::Positive, "a length in metres");
     }
-    match body_shape(body).check() {
+    match body.shape().check() {
         Ok(()) => true,
         Err(error) => {
             let hint = "list the corners in order around the outline, without crossing it";
@@ -136,7 +135,7 @@ fn check_place(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {
     if body.kind != BodyKind::Dynamic || tanks.is_empty() {
         return;
     }
-    let places = body_copies(body);
+    let places: Vec<[f64; 2]> = body.instances(0).into_iter().map(|(_, place)| place.into()).collect();
     let outside = |place: &&[f64; 2]| !tanks.iter().any(|tank| holds(tank, **place));
     if let Some([x, y]) = places.iter().find(outside) {
         let which = if body.copies.is_some() { "a copy of the body" } else { "the body" };

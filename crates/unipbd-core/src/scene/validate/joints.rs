@@ -2,14 +2,13 @@
 
 use super::checker::{Allowed, Checker};
 use super::materials::excerpt;
-use crate::build::body_names;
 use crate::scene::{JointDescription, JointRule, KeyPath, nearest};
 
 pub(super) fn check(checker: &mut Checker) {
     if checker.scene.joint.is_empty() {
         return;
     }
-    let names = body_names(checker.scene);
+    let names = checker.scene.body_names();
     for (index, joint) in checker.scene.joint.iter().enumerate() {
         let path = KeyPath::entry("joint", index);
         check_body(checker, path.then("body"), &joint.body, &names);

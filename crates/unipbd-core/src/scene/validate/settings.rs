@@ -62,6 +62,8 @@ fn check_solver(checker: &mut Checker) {
         Allowed::Between(1.0, 1000.0),
         "one is best; raise `substeps` for accuracy",
     );
+    let tolerance = solver.tolerance;
+    checker.range(path("tolerance"), tolerance, Allowed::NotNegative, "0.01 stops at 1 % compression; 0 never stops");
     let settle = f64::from(solver.settle_substeps);
     checker.range(path("settle_substeps"), settle, Allowed::Between(0.0, 100_000.0), "the default is 40");
     let radius = solver.kernel_radius;
@@ -69,6 +71,10 @@ fn check_solver(checker: &mut Checker) {
     let target = solver.target_compression;
     let hint = "a fraction: 0.01 aims at 1 % compression";
     checker.range(path("target_compression"), target, Allowed::Between(1e-6, 0.5), hint);
+    let mixing = solver.constraint_mixing;
+    checker.range(path("constraint_mixing"), mixing, Allowed::Between(0.0, 10.0), "the default is 0");
+    let pressure = solver.artificial_pressure;
+    checker.range(path("artificial_pressure"), pressure, Allowed::Between(0.0, 1.0), "the default is 0");
     if let Some(relaxation) = solver.relaxation {
         let hint = "0.5 suits liquids, 0.4 gas";
         if checker.range(path("relaxation"), relaxation, Allowed::Positive, hint) {

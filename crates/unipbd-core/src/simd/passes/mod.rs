@@ -10,7 +10,7 @@ pub use correction::correction;
 pub use density::{DensityInput, DensityOutput, density};
 pub use fields::{difference_gradient, laplacian};
 pub use repulsion::repulsion;
-pub use velocity::{vorticity, xsph};
+pub use velocity::{vorticity, xsph, xsph_mixed};
 
 use super::Level;
 #[cfg(not(feature = "f64"))]

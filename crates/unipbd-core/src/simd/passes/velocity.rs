@@ -23,6 +23,20 @@ pub fn xsph<K: Shape>(
     });
 }
 
+/// out_i = sum_j (s_i + s_j) w_i / (w_i + w_j) (v_j - v_i) W_ij: what two of unlike inverse masses w
+/// exchange keeps their momentum. `traits` holds the strength s and w of each row; a row with w = 0
+/// drags others along and is not dragged.
+pub fn xsph_mixed<K: Shape>(
+    pairs: Pairs<'_>,
+    kernel: K,
+    positions: &[Vector],
+    velocities: &[Vector],
+    traits: &[Vector],
+    out: &mut [Vector],
+) {
+    in_space!(pairs, space => pairs.fill_vectors(&XsphMixed { kernel, space, positions, velocities, traits }, out));
+}
+
 /// out_i = sum_j x_ij x (v_j - v_i) g_ij: the vorticity, once multiplied by the volume of a particle.
 pub fn vorticity<K: Shape>(pairs: Pairs<'_>, kernel: K, positions: &[Vector], velocities: &[Vector], out: &mut [Real]) {
     in_space!(pairs, space => pairs.fill(&Vorticity { kernel, space, positions, velocities }, out));
@@ -62,6 +76,46 @@ impl<K: Shape, S: Space, const WEIGHTED: bool> Pass<2> for Xsph<'_, K, S, WEIGHT
 
     fn shortest_column(&self) -> usize {
         self.positions.len().min(self.velocities.len()).min(rows_if(WEIGHTED, self.weights))
+    }
+}
+
+#[derive(Clone, Copy)]
+struct XsphMixed<'a, K, S> {
+    kernel: K,
+    space: S,
+    positions: &'a [Vector],
+    velocities: &'a [Vector],
+    traits: &'a [Vector],
+}
+
+/// (s_i + s_j) w_i / (w_i + w_j); zero for two rows without inverse mass.
+#[inline(always)]
+fn exchange<M: Number>((s_i, w_i): (M, M), (s_j, w_j): (M, M)) -> M {
+    (s_i + s_j) * (w_i / (w_i + w_j).larger(w_i.like(Real::MIN_POSITIVE)))
+}
+
+impl<K: Shape, S: Space> Pass<2> for XsphMixed<'_, K, S> {
+    fn row(&self, list: &NeighborList, row: usize) -> [Real; 2] {
+        let [mut sum_x, mut sum_y] = [0.0; 2];
+        list.for_each(row, |j| {
+            let apart = self.positions[row] - self.positions[j];
+            let (x, y) = self.space.shortest(apart.x, apart.y);
+            let exchange = exchange(self.traits[row].into(), self.traits[j].into());
+            let w = self.kernel.at(x * x + y * y).0 * exchange;
+            sum_x += w * (self.velocities[j].x - self.velocities[row].x);
+            sum_y += w * (self.velocities[j].y - self.velocities[row].y);
+        });
+        self.finish([sum_x, sum_y])
+    }
+
+    #[inline(always)]
+    fn finish<M: Number>(&self, [x, y]: [M; 2]) -> [M; 2] {
+        let factor = x.like(self.kernel.value_scale());
+        [x * factor, y * factor]
+    }
+
+    fn shortest_column(&self) -> usize {
+        self.positions.len().min(self.velocities.len()).min(self.traits.len())
     }
 }
 
@@ -148,6 +202,40 @@ mod lanes {
                 // SAFETY: as above.
                 w = w * unsafe { F::gather(self.weights.as_ptr().add(base), column) };
             }
+            // Padding has no velocity of its own and adds nothing.
+            [w * (u - own.1.0), w * (v - own.1.1)]
+        }
+    }
+
+    #[allow(unsafe_code)]
+    impl<K: Shape, S: Space> LanePass<2> for XsphMixed<'_, K, S> {
+        /// Position, velocity and traits.
+        type Own<F: Lanes> = ((F, F), (F, F), (F, F));
+
+        #[inline(always)]
+        unsafe fn own<F: Lanes>(&self, base: usize, column: &[i16; LANES]) -> Self::Own<F> {
+            // SAFETY: the caller vouches that all rows are within the columns.
+            unsafe {
+                let (at, velocity) = gather_both(self.positions, self.velocities, base, column);
+                (at, velocity, F::gather_vectors(self.traits.as_ptr().add(base), column))
+            }
+        }
+
+        #[inline(always)]
+        unsafe fn terms<F: Lanes, E: Entry>(
+            &self,
+            own: &Self::Own<F>,
+            base: usize,
+            column: &[E; LANES],
+            _counted: impl Fn(F) -> F,
+        ) -> [F; 2] {
+            // SAFETY: the caller vouches that all rows are within the columns.
+            let (((other_x, other_y), (u, v)), traits): (((F, F), (F, F)), (F, F)) = unsafe {
+                let both = gather_both(self.positions, self.velocities, base, column);
+                (both, F::gather_vectors(self.traits.as_ptr().add(base), column))
+            };
+            let (x, y) = self.space.shortest(own.0.0 - other_x, own.0.1 - other_y);
+            let w = self.kernel.at(x * x + y * y).0 * exchange(own.2, traits);
             // Padding has no velocity of its own and adds nothing.
             [w * (u - own.1.0), w * (v - own.1.1)]
         }

@@ -1,16 +1,16 @@
 //! Times the passes over pairs against two yardsticks in the same run: a plain scalar loop over a
 //! compressed list, and a loop of nothing but square roots and quotients.
-//!
-//! `cargo run --release --example pass_timing [particles ...]`
 #![allow(unsafe_code)]
 
+use crate::Lattice;
 use std::hint::black_box;
+use std::ops::Deref;
 use std::time::Instant;
 use unipbd_core::neighbors::{Grid, NeighborList, Periodic};
 use unipbd_core::parallel::Parallelism::{self, Pool, Serial};
 use unipbd_core::simd::{
     DensityInput, DensityOutput, Level, Pairs, Weights, WendlandC2, correction, density, difference_gradient,
-    laplacian, repulsion, vorticity, xsph,
+    laplacian, repulsion, vorticity, xsph, xsph_mixed,
 };
 use unipbd_core::{Real, Vector};
 
@@ -18,40 +18,28 @@ use unipbd_core::{Real, Vector};
 const RADIUS: Real = 2.0;
 const ROUNDS: usize = 31;
 
+/// Particles, and their pairs once more as a compressed list.
 struct Case {
-    x: Vec<Vector>,
-    v: Vec<Vector>,
-    field: Vec<Real>,
-    grid: Grid,
-    list: NeighborList,
+    set: Lattice,
     starts: Vec<u32>,
     entries: Vec<u32>,
 }
 
-/// A square block of particles, half a spacing of jitter on a lattice of spacing 1, sorted.
 fn case(rows: usize) -> Case {
-    let mut state = 1u64;
-    let mut random = || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (state >> 40) as Real / (1u64 << 24) as Real - 0.5
-    };
-    let side = (rows as f64).sqrt() as usize;
-    let lattice: Vec<_> = (0..rows)
-        .map(|k| Vector::new((k % side) as Real + 0.5 * random(), (k / side) as Real + 0.5 * random()))
-        .collect();
-    let mut grid = Grid::new(Periodic::NONE);
-    let order = grid.order(&lattice, rows, RADIUS, Serial);
-    let x: Vec<_> = order.iter().map(|&row| lattice[row as usize]).collect();
-    let v = (0..rows).map(|_| Vector::new(random(), random())).collect();
-    let field = (0..rows).map(|_| random()).collect();
-    let mut list = NeighborList::default();
-    list.build(&grid, &x, RADIUS, Serial);
+    let set = Lattice::new(rows, RADIUS);
     let (mut starts, mut entries) = (vec![0], Vec::new());
     for row in 0..rows {
-        list.for_each(row, |j| entries.push(j as u32));
+        set.list.for_each(row, |j| entries.push(j as u32));
         starts.push(entries.len() as u32);
     }
-    Case { x, v, field, grid, list, starts, entries }
+    Case { set, starts, entries }
+}
+
+impl Deref for Case {
+    type Target = Lattice;
+    fn deref(&self) -> &Lattice {
+        &self.set
+    }
 }
 
 impl Case {
@@ -159,7 +147,8 @@ fn pass_entries<'a>(case: &'a Case, level: Level, parallelism: Parallelism, tag:
     let (mut a, mut b, mut g) = (vec![0.0; rows], vec![0.0; rows], vec![Vector::ZERO; rows]);
     let (mut g1, mut g2, mut g3, mut g4) = (g.clone(), g.clone(), g.clone(), g.clone());
     let (mut c, mut d, mut e, mut f) = (a.clone(), a.clone(), a.clone(), a.clone());
-    let mut h = g.clone();
+    let (mut h, mut m) = (g.clone(), g.clone());
+    let traits: Vec<_> = case.field.iter().map(|&value| Vector::new(0.1, 1.0 + value)).collect();
     let one = Weights::Uniform(1.0);
     let input = DensityInput { positions: &case.x, gradient_positions: None, weights: one };
     let split =
@@ -173,6 +162,7 @@ fn pass_entries<'a>(case: &'a Case, level: Level, parallelism: Parallelism, tag:
         }),
         timed(format!("correction   {tag}"), move || correction(pairs, kernel, &case.x, &case.field, &mut g1)),
         timed(format!("xsph         {tag}"), move || xsph(pairs, kernel, &case.x, &case.v, one, &mut g2)),
+        timed(format!("xsph mixed   {tag}"), move || xsph_mixed(pairs, kernel, &case.x, &case.v, &traits, &mut m)),
         timed(format!("vorticity    {tag}"), move || vorticity(pairs, kernel, &case.x, &case.v, &mut c)),
         timed(format!("gradient     {tag}"), move || {
             difference_gradient(pairs, kernel, &case.x, &case.field, &mut g3);
@@ -182,11 +172,12 @@ fn pass_entries<'a>(case: &'a Case, level: Level, parallelism: Parallelism, tag:
     ]
 }
 
-fn run(rows: usize) {
+/// Times everything at this size; a table in Markdown.
+pub fn report(rows: usize, levels: &[Level]) -> String {
     let case = case(rows);
     let (pairs, slots) = (case.list.pairs(), case.list.slots());
-    println!(
-        "\n{rows} particles: {:.1} neighbours, {:.1} slots each, {:.0} bytes of list each",
+    let mut text = format!(
+        "{rows} particles: {:.1} neighbours, {:.1} slots each, {:.0} bytes of list each.\n\n",
         pairs as f64 / rows as f64,
         slots as f64 / rows as f64,
         case.list.memory_bytes() as f64 / rows as f64
@@ -212,29 +203,20 @@ fn run(rows: usize) {
         timed("list build", || build.build(&case.grid, &case.x, RADIUS, Serial)),
         timed("list build   2 threads", || build_pool.build(&case.grid, &case.x, RADIUS, Pool)),
     ];
-    let all = std::env::args().any(|argument| argument == "levels");
-    let levels = if all { Level::available() } else { vec![Level::best()] };
-    for level in levels {
+    for &level in levels {
         entries.extend(pass_entries(&case, level, Serial, &format!("{level:?}")));
     }
     entries.extend(pass_entries(&case, Level::best(), Pool, "2 threads"));
     measure(&mut entries, rows);
     let least = |name: &str| entries.iter().find(|e| e.name.starts_with(name)).map_or(f64::NAN, |e| e.times[0]);
     let roof = least("roofline");
-    println!("{:32} {:>8} {:>8} {:>9} {:>9}", "ns per particle", "least", "median", "x scalar", "x roof");
+    text += "| ns per particle | least | median | faster than scalar | of the roofline |\n|---|---|---|---|---|\n";
+    let ratio = |ratio: f64| if ratio.is_finite() { format!("{ratio:.2}") } else { String::new() };
     for entry in &entries {
         let scalar = least(&format!("{:12} scalar CSR", entry.name.split("  ").next().unwrap_or("")));
         let (time, median) = (entry.times[0], entry.times[ROUNDS / 2]);
-        println!("{:32} {time:8.2} {median:8.2} {:9.2} {:9.2}", entry.name, scalar / time, roof / time);
+        let (name, faster, part) = (&entry.name, ratio(scalar / time), ratio(roof / time));
+        text += &format!("| {name} | {time:.2} | {median:.2} | {faster} | {part} |\n");
     }
-}
-
-fn main() {
-    let sizes: Vec<usize> = std::env::args().skip(1).filter_map(|size| size.parse().ok()).collect();
-    let pool = rayon::ThreadPoolBuilder::new().num_threads(2).build().expect("two threads");
-    pool.install(|| {
-        for &rows in if sizes.is_empty() { &[10_000, 100_000][..] } else { &sizes } {
-            run(rows);
-        }
-    });
+    text
 }

@@ -1,0 +1,89 @@
+//! Writes `docs/performance.md` anew from measurements on this machine.
+//!
+//! `cargo run --release -p unipbd-benches --bin report [sizes ...] > docs/performance.md`
+
+use std::process::Command;
+
+use unipbd_benches::steps::{self, Measured};
+use unipbd_benches::{on_two_threads, roofline};
+use unipbd_core::simd::Level;
+
+fn main() {
+    let given: Vec<usize> = std::env::args().skip(1).filter_map(|size| size.parse().ok()).collect();
+    let sizes = if given.is_empty() { vec![1_000, 10_000, 100_000, 1_000_000] } else { given };
+    println!("{INTRODUCTION}");
+    println!("{}\n", machine());
+    println!("## Passes\n\n{PASSES}\n");
+    on_two_threads(|| {
+        for rows in [10_000, 100_000] {
+            println!("{}", roofline::report(rows, &[Level::best()]));
+        }
+    });
+    let measured: Vec<Measured> = sizes.iter().map(|&size| steps::measure(size, frames(size))).collect();
+    println!("## Steps\n\n{STEPS}\n\n{}", step_table(&measured));
+    if let [.., small, _, large] = &measured[..] {
+        println!("{}\n", growth_line(small, large));
+    }
+    println!("{}", stage_table(&measured));
+}
+
+const INTRODUCTION: &str = "\
+# Performance
+
+Written by `cargo run --release -p unipbd-benches --bin report > docs/performance.md`; do not edit by
+hand. Everything in a table is measured in turn in one run, so that a slow moment of the machine hits
+all of it: trust the ratios, not the nanoseconds.
+";
+
+const PASSES: &str = "\
+A lattice with random shifts, h = 2 dx. \"Scalar\" is a plain loop over vectors and a compressed list of
+the same pairs; the roofline is a loop of nothing but one exact square root and one quotient per slot of
+the list, eight at a time. Results have the same bits on every instruction set and number of threads.";
+
+const STEPS: &str = "\
+A dam break with viscosity, h = 2.5 dx, one iteration a substep, list builds included; nanoseconds per
+particle and substep, the least over the frames.";
+
+fn frames(size: usize) -> u32 {
+    (2_000_000 / size.max(1)).clamp(3, 100) as u32
+}
+
+fn machine() -> String {
+    let information = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
+    let model = information.lines().find_map(|line| line.strip_prefix("model name")).unwrap_or("unknown processor");
+    let model = model.trim_start_matches(['\t', ' ', ':']);
+    let threads = std::thread::available_parallelism().map_or(1, usize::from);
+    let compiler = Command::new("rustc").arg("--version").output().map(|output| output.stdout).unwrap_or_default();
+    let compiler = String::from_utf8_lossy(&compiler).trim().to_owned();
+    let (version, level) = (env!("CARGO_PKG_VERSION"), Level::best());
+    format!("{model}, {threads} hardware threads, {level:?}; {compiler}; unipbd {version}.")
+}
+
+fn step_table(measured: &[Measured]) -> String {
+    let mut text =
+        "| particles | 1 thread [ns] | 2 threads [ns] | speed-up | bytes per particle |\n|---|---|---|---|---|\n"
+            .to_owned();
+    for Measured { particles, least: [one, two], bytes, .. } in measured {
+        text += &format!("| {particles} | {one:.1} | {two:.1} | {:.2} | {bytes:.0} |\n", one / two);
+    }
+    text
+}
+
+fn growth_line(small: &Measured, large: &Measured) -> String {
+    let exponent = steps::growth(small, large);
+    format!(
+        "From {} to {} particles the time of a substep grows with the power {exponent:.3}.",
+        small.particles, large.particles
+    )
+}
+
+fn stage_table(measured: &[Measured]) -> String {
+    let sizes = measured.iter().map(|of| format!(" {} |", of.particles)).collect::<String>();
+    let mut text = format!("| stage, 1 thread, mean [ns] |{sizes}\n|---|{}\n", "---|".repeat(measured.len()));
+    for (index, (name, _)) in measured[0].stages.iter().enumerate() {
+        let cells =
+            measured.iter().map(|of| of.stages.get(index).map_or_else(String::new, |(_, time)| format!("{time:.1}")));
+        text += &format!("| {name} |{}\n", cells.map(|cell| format!(" {cell} |")).collect::<String>());
+    }
+    text
+}

@@ -1,0 +1,7 @@
+//! The scenes of the project, and the physics they rest on.
+
+mod coupling;
+mod effects;
+mod files;
+mod interface;
+mod support;

@@ -1,0 +1,139 @@
+//! What a case is, and what comes of it.
+
+use unipbd_core::scene::SolverSettings;
+
+use crate::runner::{Cost, Failure};
+
+/// Where a figure must lie.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Band {
+    /// Smallest good value.
+    pub low: f64,
+    /// Largest good value.
+    pub high: f64,
+}
+
+impl Band {
+    /// Up to this size, either sign.
+    pub const fn within(size: f64) -> Band {
+        Band { low: -size, high: size }
+    }
+
+    /// From `low` to `high`.
+    pub const fn between(low: f64, high: f64) -> Band {
+        Band { low, high }
+    }
+
+    /// Anything: the figure is reported only.
+    pub const OPEN: Band = Band { low: f64::NEG_INFINITY, high: f64::INFINITY };
+
+    /// Whether the band asks for anything.
+    pub fn is_open(self) -> bool {
+        self.low == f64::NEG_INFINITY && self.high == f64::INFINITY
+    }
+
+    /// Whether a value lies in it; a value that is not finite never does.
+    pub fn holds(self, value: f64) -> bool {
+        value.is_finite() && self.low <= value && value <= self.high
+    }
+}
+
+impl std::fmt::Display for Band {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        if self.is_open() {
+            write!(f, "reported")
+        } else if self.low == -self.high {
+            write!(f, "±{}", self.high)
+        } else if self.low == f64::NEG_INFINITY {
+            write!(f, "≤ {}", self.high)
+        } else {
+            write!(f, "{} to {}", self.low, self.high)
+        }
+    }
+}
+
+/// One measured number.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Figure {
+    /// What it is, with its unit.
+    pub what: &'static str,
+    /// The value.
+    pub value: f64,
+    /// Where it must lie.
+    pub band: Band,
+}
+
+impl Figure {
+    /// A figure with its band.
+    pub const fn new(what: &'static str, value: f64, band: Band) -> Figure {
+        Figure { what, value, band }
+    }
+
+    /// Whether it lies in its band.
+    pub fn holds(&self) -> bool {
+        self.band.is_open() || self.band.holds(self.value)
+    }
+}
+
+/// How a case is to be run.
+#[derive(Clone, Debug)]
+pub struct Trial {
+    /// Particles along the length of the case.
+    pub resolution: u32,
+    /// How the constraints are solved.
+    pub solver: SolverSettings,
+}
+
+/// What a case gave.
+#[derive(Clone, Debug)]
+pub struct Outcome {
+    /// Name of the case.
+    pub case: &'static str,
+    /// Particles along its length.
+    pub resolution: u32,
+    /// The figures; the first is the error norm of the case.
+    pub figures: Vec<Figure>,
+    /// What it took.
+    pub cost: Cost,
+}
+
+impl Outcome {
+    /// The error norm of the case.
+    pub fn error(&self) -> f64 {
+        self.figures.first().map_or(f64::NAN, |figure| figure.value.abs())
+    }
+
+    /// Figures outside their bands.
+    pub fn missed(&self) -> impl Iterator<Item = &Figure> {
+        self.figures.iter().filter(|figure| !figure.holds())
+    }
+}
+
+/// A case of the suite.
+#[derive(Clone, Copy)]
+pub struct Case {
+    /// Short name, for the command line and the table.
+    pub name: &'static str,
+    /// What is known about it, and from whom.
+    pub truth: &'static str,
+    /// Resolution of the quick run.
+    pub quick: u32,
+    /// Resolutions of the full run.
+    pub full: [u32; 3],
+    /// Runs it.
+    pub run: fn(&Trial) -> Result<Measured, Failure>,
+}
+
+/// Figures of a run and its cost.
+pub type Measured = (Vec<Figure>, Cost);
+
+impl Case {
+    /// Runs the case.
+    ///
+    /// # Errors
+    /// When the scene is refused or the run diverges.
+    pub fn run(&self, resolution: u32, solver: &SolverSettings) -> Result<Outcome, Failure> {
+        let (figures, cost) = (self.run)(&Trial { resolution, solver: solver.clone() })?;
+        Ok(Outcome { case: self.name, resolution, figures, cost })
+    }
+}

@@ -1,0 +1,15 @@
+//! Cases with a known answer: each a scene made in code, its error against the truth, its band and
+//! its cost. `cargo run --release -p unipbd-validation -- --help` says what can be run.
+
+pub mod case;
+pub mod cases;
+pub mod chart;
+pub mod exact;
+pub mod report;
+pub mod runner;
+pub mod scenes;
+pub mod stress;
+pub mod sweep;
+
+pub use case::{Band, Case, Figure, Outcome, Trial};
+pub use runner::{Cost, Failure, Runner};

@@ -1,0 +1,175 @@
+//! The command of the suite.
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use unipbd_core::scene::{GradientPoint, KernelKind, SolverSettings, Substeps};
+use unipbd_validation::report::{Entry, TARGETS, sheet};
+use unipbd_validation::stress::{Ending, NAMED, fuzz, random_scene, summary};
+use unipbd_validation::{cases, sweep};
+
+const HELP: &str =
+    "usage: unipbd-validation [--quick | --full | --sweep [--full] | --stress [--full] | CASE [RESOLUTION] [SETTING=VALUE...]]
+  --quick   every case at its quick size (default)
+  --full    every case at three resolutions and three targets; writes docs/accuracy.md
+  --sweep   run time against error for four cases; writes docs/accuracy/*.csv and *.svg
+  --stress  scenes that ask too much, and 100 random ones (2000 with --full)
+  CASE      one case; settings are target, substeps, iterations, tolerance, kernel, kernel_radius, relaxation,
+            gradients, constraint_mixing, artificial_pressure";
+
+fn main() -> ExitCode {
+    let arguments: Vec<String> = std::env::args().skip(1).collect();
+    let has = |flag: &str| arguments.iter().any(|argument| argument == flag);
+    let done = if has("--help") {
+        println!("{HELP}");
+        Ok(true)
+    } else if has("--stress") {
+        Ok(run_stress(if has("--full") { 2000 } else { 100 }))
+    } else if has("--sweep") {
+        run_sweeps(has("--full"))
+    } else if has("--full") {
+        run_full()
+    } else if let Some(name) = arguments.first().filter(|name| *name != "--quick") {
+        run_one(name, &arguments[1..])
+    } else {
+        Ok(run_quick())
+    };
+    match done {
+        Ok(true) => ExitCode::SUCCESS,
+        Ok(false) => ExitCode::FAILURE,
+        Err(error) => {
+            eprintln!("{error}");
+            ExitCode::from(2)
+        }
+    }
+}
+
+fn show(entry: &Entry) {
+    println!("{} at {}, target {}: {}", entry.case.name, entry.resolution, entry.target, entry.verdict());
+    let Ok(outcome) = &entry.result else { return };
+    for figure in &outcome.figures {
+        let mark = if figure.holds() { " " } else { "!" };
+        println!("  {mark} {}: {:.5e} ({})", figure.what, figure.value, figure.band);
+    }
+    println!(
+        "    {} particles, {} substeps, {:.2} s, {:.2e} pair visits",
+        outcome.cost.particles,
+        outcome.cost.substeps,
+        outcome.cost.wall.as_secs_f64(),
+        outcome.cost.pair_visits
+    );
+}
+
+fn run_quick() -> bool {
+    let entries = cases::ALL.iter().map(|case| Entry::run(case, case.quick, 0.01));
+    entries.inspect(show).filter(|entry| entry.verdict() != "holds").count() == 0
+}
+
+fn run_one(name: &str, rest: &[String]) -> Result<bool, Box<dyn std::error::Error>> {
+    let case = cases::find(name).ok_or_else(|| {
+        let names: Vec<&str> = cases::ALL.iter().map(|case| case.name).collect();
+        format!("there is no case \"{name}\"; the cases are {}", names.join(", "))
+    })?;
+    let (mut resolution, mut solver) = (case.quick, SolverSettings::default());
+    for argument in rest {
+        match argument.split_once('=') {
+            None => resolution = argument.parse()?,
+            Some((key, value)) => set(&mut solver, key, value)?,
+        }
+    }
+    let target = solver.target_compression;
+    let entry = Entry { case, resolution, target, result: case.run(resolution, &solver) };
+    show(&entry);
+    Ok(entry.verdict() == "holds")
+}
+
+/// Sets a key of the solver.
+fn set(solver: &mut SolverSettings, key: &str, value: &str) -> Result<(), Box<dyn std::error::Error>> {
+    match key {
+        "target" => solver.target_compression = value.parse()?,
+        "substeps" => solver.substeps = Substeps::Fixed(value.parse()?),
+        "iterations" => solver.iterations = value.parse()?,
+        "tolerance" => solver.tolerance = value.parse()?,
+        "kernel_radius" => solver.kernel_radius = value.parse()?,
+        "relaxation" => solver.relaxation = Some(value.parse()?),
+        "constraint_mixing" => solver.constraint_mixing = value.parse()?,
+        "artificial_pressure" => solver.artificial_pressure = value.parse()?,
+        "gradients" => {
+            solver.gradients = Some(match value {
+                "start" => GradientPoint::Start,
+                "middle" => GradientPoint::Middle,
+                "predicted" => GradientPoint::Predicted,
+                _ => return Err("gradients are start, middle or predicted".into()),
+            });
+        }
+        "kernel" => {
+            solver.kernel = match value {
+                "wendland_c2" => KernelKind::WendlandC2,
+                "cubic_spline" => KernelKind::CubicSpline,
+                "poly6_spiky" => KernelKind::Poly6Spiky,
+                _ => return Err("kernels are wendland_c2, cubic_spline, poly6_spiky".into()),
+            };
+        }
+        _ => return Err(format!("there is no setting {key}").into()),
+    }
+    Ok(())
+}
+
+fn run_full() -> Result<bool, Box<dyn std::error::Error>> {
+    let mut entries = Vec::new();
+    for case in cases::ALL {
+        let mut resolutions = case.full.to_vec();
+        resolutions.dedup();
+        for resolution in resolutions {
+            for target in TARGETS {
+                let entry = Entry::run(case, resolution, target);
+                show(&entry);
+                entries.push(entry);
+            }
+        }
+    }
+    std::fs::create_dir_all("docs")?;
+    let charts: Vec<String> = sweep::CASES
+        .iter()
+        .map(|(name, ..)| format!("accuracy/{name}.svg"))
+        .filter(|path| Path::new("docs").join(path).exists())
+        .collect();
+    std::fs::write("docs/accuracy.md", sheet(&entries, &charts))?;
+    Ok(true)
+}
+
+fn run_sweeps(full: bool) -> Result<bool, Box<dyn std::error::Error>> {
+    std::fs::create_dir_all("docs/accuracy")?;
+    for (case, resolution) in sweep::cases(full) {
+        let (curves, rows) = sweep::sweep(case, resolution, |line| println!("{line}"));
+        std::fs::write(format!("docs/accuracy/{}.csv", case.name), sweep::HEADER.to_owned() + &rows)?;
+        std::fs::write(format!("docs/accuracy/{}.svg", case.name), sweep::picture(case, &curves))?;
+    }
+    Ok(true)
+}
+
+fn run_stress(scenes: u64) -> bool {
+    let mut good = true;
+    for stress in NAMED {
+        let ending = (stress.run)();
+        good &= ending.is_good();
+        println!("{}: {ending:?}", stress.name);
+    }
+    let counts = fuzz(0..scenes, |seed, ending| {
+        if let Ending::Broken(what) = ending {
+            println!("seed {seed}: {what}\n    {}", summary(&random_scene(seed).0));
+        }
+    });
+    println!(
+        "{scenes} random scenes: {} sound, {} refused, {} stopped, {} broken",
+        counts.sound,
+        counts.refused,
+        counts.stopped.len(),
+        counts.broken.len()
+    );
+    counts
+        .stopped
+        .iter()
+        .for_each(|(seed, error)| println!("seed {seed} stopped: {error}\n    {}", summary(&random_scene(*seed).0)));
+    good && counts.broken.is_empty()
+}

@@ -1,0 +1,116 @@
+//! The accuracy sheet.
+
+use std::fmt::Write;
+
+use unipbd_core::scene::SolverSettings;
+
+use crate::case::{Case, Outcome};
+use crate::runner::Failure;
+
+/// A step setting of the full run: how much compression `auto` may allow.
+pub const TARGETS: [f64; 3] = [0.04, 0.01, 0.0025];
+
+/// The solver with this target.
+pub fn settings(target: f64) -> SolverSettings {
+    SolverSettings { target_compression: target, ..SolverSettings::default() }
+}
+
+/// One line of the sheet.
+pub struct Entry {
+    /// The case.
+    pub case: &'static Case,
+    /// Particles along its length.
+    pub resolution: u32,
+    /// Target compression.
+    pub target: f64,
+    /// What came of it.
+    pub result: Result<Outcome, Failure>,
+}
+
+impl Entry {
+    /// Runs one entry.
+    pub fn run(case: &'static Case, resolution: u32, target: f64) -> Entry {
+        Entry { case, resolution, target, result: case.run(resolution, &settings(target)) }
+    }
+
+    /// `holds`, `misses` or why there is no result.
+    pub fn verdict(&self) -> String {
+        match &self.result {
+            Err(failure) => format!("fails: {failure}"),
+            Ok(outcome) if outcome.missed().next().is_none() => "holds".to_owned(),
+            Ok(_) => "**misses**".to_owned(),
+        }
+    }
+}
+
+/// The whole sheet as markdown.
+pub fn sheet(entries: &[Entry], charts: &[String]) -> String {
+    let mut text = String::from(
+        "# Accuracy\n\nMade by `cargo run --release -p unipbd-validation -- --full`; do not edit. Each case has a known \
+         answer (`crates/unipbd-validation/src/cases`). Resolution is the number of particles along the length of the \
+         case (substeps per frame for bodies); the target is `solver.target_compression`. Wall time is that of one \
+         thread of the machine this was made on; pair visits are two passes per iteration over pi (h/dx)^2 neighbours.\n\n\
+         A case that misses its band says so.\n",
+    );
+    for case in crate::cases::ALL {
+        let own: Vec<&Entry> = entries.iter().filter(|entry| std::ptr::eq(entry.case, case)).collect();
+        if own.is_empty() {
+            continue;
+        }
+        let _ = writeln!(text, "\n## {}\n\nTruth: {}.\n", case.name.replace('_', " "), case.truth);
+        text.push_str("| resolution | target | figure | value | band | verdict | wall [s] | pair visits |\n");
+        text.push_str("|---|---|---|---|---|---|---|---|\n");
+        own.iter().for_each(|entry| rows(&mut text, entry));
+        if let Some(order) = order(&own) {
+            let _ = writeln!(text, "\nOrder of convergence of the first figure with the spacing: {order:.2}.");
+        }
+    }
+    if !charts.is_empty() {
+        text.push_str(
+            "\n## Run time against error\n\nFilled points are on the front: nothing is both cheaper and better.\n\n",
+        );
+        charts.iter().for_each(|chart| {
+            let _ = writeln!(text, "![{chart}]({chart})");
+        });
+    }
+    text
+}
+
+fn rows(text: &mut String, entry: &Entry) {
+    let start = format!("| {} | {} |", entry.resolution, entry.target);
+    let Ok(outcome) = &entry.result else {
+        let _ = writeln!(text, "{start} | | | {} | | |", entry.verdict());
+        return;
+    };
+    for (index, figure) in outcome.figures.iter().enumerate() {
+        let verdict = if figure.band.is_open() {
+            ""
+        } else if figure.holds() {
+            "holds"
+        } else {
+            "**misses**"
+        };
+        let cost = if index == 0 {
+            format!("{:.2} | {:.1e}", outcome.cost.wall.as_secs_f64(), outcome.cost.pair_visits)
+        } else {
+            " | ".to_owned()
+        };
+        let _ =
+            writeln!(text, "{start} {} | {:.4e} | {} | {verdict} | {cost} |", figure.what, figure.value, figure.band);
+    }
+}
+
+/// Slope of log(error) over log(dx) at the default target.
+fn order(entries: &[&Entry]) -> Option<f64> {
+    let points: Vec<(f64, f64)> = entries
+        .iter()
+        .filter(|entry| entry.target == 0.01)
+        .filter_map(|entry| Some((-f64::from(entry.resolution).ln(), entry.result.as_ref().ok()?.error().ln())))
+        .filter(|(_, error)| error.is_finite())
+        .collect();
+    let count = points.len() as f64;
+    let (mx, my) = (points.iter().map(|p| p.0).sum::<f64>() / count, points.iter().map(|p| p.1).sum::<f64>() / count);
+    let (top, bottom) =
+        points.iter().fold((0.0, 0.0), |(a, b), (x, y)| (a + (x - mx) * (y - my), b + (x - mx) * (x - mx)));
+    (points.len() >= 2 && bottom > 0.0).then(|| top / bottom)
+}

@@ -1,0 +1,138 @@
+//! Runs a scene frame by frame and counts what it costs.
+
+use std::time::{Duration, Instant};
+
+use unipbd_core::math::{Vector64, wide};
+use unipbd_core::scene::Scene;
+use unipbd_core::{BuildOptions, Edit, MaterialIndex, Solver};
+
+/// Why a case gave nothing.
+#[derive(Clone, Debug)]
+pub struct Failure(pub String);
+
+impl std::fmt::Display for Failure {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{}", self.0)
+    }
+}
+
+impl std::error::Error for Failure {}
+
+/// What a run cost.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Cost {
+    /// Wall-clock time of the steps, on one thread.
+    pub wall: Duration,
+    /// Pairs of particles visited: two passes per iteration over pi (h/dx)^2 neighbours each.
+    pub pair_visits: f64,
+    /// Particles at the end.
+    pub particles: usize,
+    /// Substeps in all.
+    pub substeps: u64,
+}
+
+impl Cost {
+    /// The sum of two runs.
+    pub fn and(self, other: Cost) -> Cost {
+        Cost {
+            wall: self.wall + other.wall,
+            pair_visits: self.pair_visits + other.pair_visits,
+            particles: self.particles.max(other.particles),
+            substeps: self.substeps + other.substeps,
+        }
+    }
+}
+
+/// A running case.
+pub struct Runner {
+    /// The solver.
+    pub solver: Solver,
+    /// So far.
+    pub cost: Cost,
+    neighbors: f64,
+}
+
+impl Runner {
+    /// Builds a scene on one thread.
+    ///
+    /// # Errors
+    /// When the scene is refused.
+    pub fn new(scene: &Scene) -> Result<Runner, Failure> {
+        let options = BuildOptions { threads: Some(1), ..BuildOptions::default() };
+        let solver = scene.build(options).map_err(|problems| Failure(format!("{problems:?}")))?;
+        let radius = scene.solver.kernel_radius;
+        Ok(Runner { solver, cost: Cost::default(), neighbors: std::f64::consts::PI * radius * radius })
+    }
+
+    /// Advances by one frame.
+    ///
+    /// # Errors
+    /// When the run diverges.
+    pub fn frame(&mut self) -> Result<(), Failure> {
+        let start = Instant::now();
+        let report = self.solver.step_frame().map_err(|error| Failure(error.to_string()))?;
+        self.cost.wall += start.elapsed();
+        self.cost.substeps += u64::from(report.substeps);
+        self.cost.particles = self.solver.positions().len();
+        let iterations = f64::from(self.solver.iterations());
+        self.cost.pair_visits += 2.0 * iterations * self.neighbors * self.solver.particles().dense() as f64;
+        Ok(())
+    }
+
+    /// Advances by this many frames and looks after each.
+    ///
+    /// # Errors
+    /// When the run diverges.
+    pub fn frames(&mut self, count: u32, mut look: impl FnMut(&Solver)) -> Result<(), Failure> {
+        for _ in 0..count {
+            self.frame()?;
+            look(&self.solver);
+        }
+        Ok(())
+    }
+
+    /// Moves every particle of the start by a field [m].
+    ///
+    /// # Errors
+    /// When the solver refuses the positions.
+    pub fn displace(&mut self, field: impl Fn(Vector64) -> Vector64) -> Result<(), Failure> {
+        let positions: Vec<Vector64> = points(&self.solver).map(|x| x + field(x)).collect();
+        self.edit(|edit, ids| edit.set_positions(ids, positions))
+    }
+
+    /// Gives every particle the velocity of a field [m/s].
+    ///
+    /// # Errors
+    /// When the solver refuses the velocities.
+    pub fn stir(&mut self, field: impl Fn(Vector64) -> Vector64) -> Result<(), Failure> {
+        let velocities: Vec<Vector64> = points(&self.solver).map(field).collect();
+        self.edit(|edit, ids| edit.set_velocities(ids, velocities))
+    }
+
+    fn edit(&mut self, change: impl FnOnce(Edit, Vec<u32>) -> Edit) -> Result<(), Failure> {
+        let ids = self.solver.ids().to_vec();
+        let edit = change(Edit::new(), ids);
+        self.solver.apply(&edit).map(|_| ()).map_err(|error| Failure(error.to_string()))
+    }
+}
+
+/// All positions [m].
+pub fn points(solver: &Solver) -> impl Iterator<Item = Vector64> + '_ {
+    solver.positions().iter().map(|position| wide(*position))
+}
+
+/// All velocities [m/s].
+pub fn velocities(solver: &Solver) -> impl Iterator<Item = Vector64> + '_ {
+    solver.velocities().iter().map(|velocity| wide(*velocity))
+}
+
+/// Positions of one material [m].
+pub fn points_of(solver: &Solver, material: MaterialIndex) -> impl Iterator<Item = Vector64> + '_ {
+    points(solver).zip(solver.material_indices()).filter(move |(_, of)| **of == material).map(|(x, _)| x)
+}
+
+/// Kinetic and potential energy [J].
+pub fn energy(solver: &Solver) -> f64 {
+    let diagnostics = solver.diagnostics();
+    diagnostics.kinetic_energy + diagnostics.potential_energy
+}

@@ -1,0 +1,76 @@
+//! Scenes that several cases share. dx = 0.1 m and g = 9.81 m/s^2 unless a case says otherwise.
+
+use unipbd_core::bodies::BodyKind;
+use unipbd_core::scene::{
+    Block, BodyDescription, Emitter, HalfPlane, Liquid, Profile, RotationRule, Scene, Slip, SolverSettings, Tank,
+};
+
+/// Spacing of the free-surface cases [m].
+pub const SPACING: f64 = 0.1;
+/// Gravity [m/s^2].
+pub const GRAVITY: f64 = 9.81;
+
+/// Water of `size` spacings in the lower left corner of a tank `width` spacings wide.
+pub fn pool(size: (f64, f64), width: f64, solver: &SolverSettings) -> Scene {
+    let (right, top) = (SPACING * size.0, SPACING * size.1);
+    Scene {
+        spacing: SPACING,
+        solver: solver.clone(),
+        liquid: vec![Liquid::new("water", 1000.0)],
+        block: vec![Block::new("water", [0.0, 0.0], [right, top])],
+        tank: vec![Tank::new([0.0, 0.0], [SPACING * width, 4.0 * top])],
+        ..Scene::default()
+    }
+}
+
+/// A floor with this friction.
+pub fn floor(friction: f64) -> HalfPlane {
+    HalfPlane { point: [0.0, 0.0], normal: [0.0, 1.0], velocity: [0.0; 2], friction, slip: Slip::Free }
+}
+
+/// A body with an outline of its own to be set, and a name.
+pub fn body(name: &str, position: [f64; 2]) -> BodyDescription {
+    BodyDescription {
+        name: name.to_owned(),
+        kind: BodyKind::Dynamic,
+        radius: None,
+        size: None,
+        outline: None,
+        position,
+        angle_deg: 0.0,
+        velocity: [0.0; 2],
+        spin_deg: 0.0,
+        density: 1000.0,
+        mass: None,
+        friction: 0.5,
+        kinetic_friction: None,
+        rolling_friction: 0.0,
+        restitution: 0.0,
+        layers: vec![0],
+        collides_with: None,
+        rotation: RotationRule::Free,
+        gravity_factor: 1.0,
+        motion: None,
+        copies: None,
+    }
+}
+
+/// A nozzle that blows upwards.
+pub fn nozzle(material: &str, position: [f64; 2], width: f64, speed: f64) -> Emitter {
+    Emitter {
+        name: String::new(),
+        material: material.to_owned(),
+        position,
+        direction: [0.0, 1.0],
+        width,
+        speed,
+        profile: Profile::Uniform,
+        temperature: 0.0,
+        jitter: 0.05,
+        start: 0.0,
+        stop: None,
+        throttle: true,
+        sheath: None,
+        smoke: None,
+    }
+}

@@ -1,0 +1,101 @@
+//! Quick sizes of the cases against their bands, and a part of the stresses.
+
+use unipbd_core::scene::{GradientPoint, SolverSettings, Substeps};
+use unipbd_validation::stress::{Ending, NAMED, fuzz};
+use unipbd_validation::{cases, report};
+
+/// Runs a case at its quick size; fails with all figures that miss their bands.
+#[track_caller]
+fn holds(name: &str) {
+    let case = cases::find(name).unwrap_or_else(|| panic!("no case {name}"));
+    let outcome = case.run(case.quick, &report::settings(0.01)).unwrap_or_else(|failure| panic!("{failure}"));
+    for figure in &outcome.figures {
+        println!("{name}: {}: {:.5e} ({})", figure.what, figure.value, figure.band);
+    }
+    let missed: Vec<String> =
+        outcome.missed().map(|figure| format!("{}: {:.5e} ({})", figure.what, figure.value, figure.band)).collect();
+    assert!(missed.is_empty(), "{name} misses:\n  {}", missed.join("\n  "));
+}
+
+/// The setting with the least damping at the cost of the default one.
+fn half_way() -> SolverSettings {
+    SolverSettings {
+        substeps: Substeps::Fixed(6),
+        kernel_radius: 3.0,
+        relaxation: Some(0.4),
+        gradients: Some(GradientPoint::Middle),
+        ..SolverSettings::default()
+    }
+}
+
+/// One figure of a case.
+#[track_caller]
+fn figure(name: &str, resolution: u32, solver: &SolverSettings, what: &str) -> f64 {
+    let case = cases::find(name).unwrap_or_else(|| panic!("no case {name}"));
+    let outcome = case.run(resolution, solver).unwrap_or_else(|failure| panic!("{failure}"));
+    let figure = outcome.figures.iter().find(|figure| figure.what == what);
+    let value = figure.unwrap_or_else(|| panic!("{name} has no figure \"{what}\"")).value;
+    println!("{name} at {resolution}: {what}: {value:.5e}");
+    value
+}
+
+#[test]
+fn dam_break_follows_the_experiment() {
+    holds("dam_break");
+}
+
+#[test]
+fn upright_boxes_float_at_their_draft() {
+    holds("floating_box");
+}
+
+#[test]
+fn heavy_over_light_overturns_at_the_known_rate() {
+    holds("rayleigh_taylor");
+}
+
+#[test]
+fn a_lid_drags_the_fluid_under_it_along() {
+    holds("couette");
+}
+
+#[test]
+fn thin_gas_falls_at_its_terminal_speed() {
+    holds("drag");
+}
+
+#[test]
+fn an_elliptical_drop_keeps_its_axes() {
+    let eight = SolverSettings { substeps: Substeps::Fixed(8), ..SolverSettings::default() };
+    let outcome = cases::find("elliptical_drop").expect("the case exists").run(50, &eight);
+    let outcome = outcome.unwrap_or_else(|failure| panic!("{failure}"));
+    let missed: Vec<_> = outcome.missed().collect();
+    assert!(missed.is_empty(), "{missed:?}");
+}
+
+#[test]
+fn half_way_with_a_wide_kernel_a_wave_loses_less_than_a_sixth_per_period() {
+    assert!(figure("standing_wave", 64, &half_way(), "decay per period") <= 0.17);
+    assert!(figure("standing_wave", 64, &half_way(), "period error").abs() <= 0.045);
+    assert!(figure("dam_break", 20, &half_way(), "worst C") <= 0.06);
+    assert!(figure("dam_break", 20, &half_way(), "energy gain") <= 0.005);
+}
+
+#[test]
+fn named_stresses_end_sound_or_stop() {
+    for stress in NAMED {
+        let ending = (stress.run)();
+        println!("{}: {ending:?}", stress.name);
+        assert!(ending.is_good(), "{}: {ending:?}", stress.name);
+    }
+}
+
+#[test]
+fn random_scenes_end_sound_or_stop() {
+    let counts = fuzz(0..100, |seed, ending| {
+        if matches!(ending, Ending::Broken(_)) {
+            println!("seed {seed}: {ending:?}");
+        }
+    });
+    assert!(counts.broken.is_empty(), "{:?}", counts.broken);
+}

@@ -1,0 +1,64 @@
+#!/usr/bin/env bash
+# All tests of unipbd: Rust and Python, with nothing but Rust (stable) and Python 3.10 installed.
+#
+#   ./test.sh           what every change must pass, in minutes
+#   ./test.sh --full    the long sizes too
+set -u
+cd "$(dirname "${BASH_SOURCE[0]}")" || exit 1
+
+case "${1:-}" in
+    "") full= ;;
+    --full) full=--full; export UNIPBD_FULL=1 ;;
+    *) sed -n '2,5p' "$0"; exit 2 ;;
+esac
+
+passed=0
+failed=0
+skipped=0
+
+part() {
+    local name="$1"
+    shift
+    printf '\n== %s: %s\n' "$name" "$*"
+    if "$@"; then
+        passed=$((passed + 1))
+    else
+        failed=$((failed + 1))
+        printf '== %s FAILED\n' "$name"
+    fi
+}
+
+skip() {
+    printf '\n== %s: skipped, %s\n' "$1" "$2"
+    skipped=$((skipped + 1))
+}
+
+# The shipped scenes as a user runs them, and their logs as others read them.
+logs() {
+    local out=target/test-logs python=target/log-tests/bin/python
+    mkdir -p "$out"
+    [ -x "$python" ] || python3 -m venv target/log-tests || return 1
+    "$python" -m pip install --quiet --disable-pip-version-check -r tests/python/requirements.txt || return 1
+    for scene in open_gas dam_break; do
+        cargo run --quiet -p unipbd-cli -- "scenes/$scene.toml" -o "$out/$scene.mcap" --force || return 1
+    done
+    "$python" tests/python/check_log.py "$out/open_gas.mcap" "$out/dam_break.mcap"
+}
+
+part format cargo fmt --all --check
+part lints cargo clippy --workspace --all-targets --quiet -- -D warnings
+part documentation env RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
+part "Rust tests" cargo test --workspace
+if [ -n "$full" ]; then
+    part "long Rust tests" cargo test --workspace --release -- --include-ignored
+fi
+if command -v python3 >/dev/null; then
+    part logs logs
+    part "Python tests" python3 tests/python/run.py $full
+else
+    skip "logs and Python tests" "no python3 here"
+fi
+command -v ffmpeg >/dev/null || skip "MP4 by a real ffmpeg" "no ffmpeg here"
+
+printf '\n%d passed, %d failed, %d skipped\n' "$passed" "$failed" "$skipped"
+[ "$failed" -eq 0 ]
