@@ -47,7 +47,8 @@ def install(python: Path, tier: str, wheel: Path | None) -> None:
     # Without isolation the interpreter keeps its path, and Cargo what it has built for it.
     run(*pip, "maturin>=1.9,<2")
     profile = "dev" if tier == "quick" else "release"
-    built = {"MATURIN_PEP517_ARGS": f"--profile {profile}"}
+    path = os.pathsep.join([str(python.parent), os.environ.get("PATH", "")])
+    built = {"MATURIN_PEP517_ARGS": f"--profile {profile}", "PATH": path}
     run(*pip, "--no-build-isolation", f"{PACKAGE}[test,gym,plot]", environment=built)
 
 
