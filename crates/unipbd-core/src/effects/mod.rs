@@ -13,9 +13,9 @@ mod wind;
 pub use conduction::Conduction;
 pub use confinement::VorticityConfinement;
 pub use drag::Drag;
-pub use smoke::{Advected, SmokeAdvection};
 pub use heating::Heating;
 pub use shear_viscosity::ShearViscosity;
+pub use smoke::{Advected, SmokeAdvection};
 pub use viscosity::Viscosity;
 pub use wind::Wind;
 

@@ -3,8 +3,8 @@
 use super::integrate;
 use super::world::World;
 use super::{SolverError, Stage};
-use crate::effects::Advected;
 use crate::constraints::ConstraintGroup;
+use crate::effects::Advected;
 use crate::math::{Real, wide};
 use crate::neighbors::Prepared;
 use crate::parallel::Parallelism;
