@@ -87,6 +87,13 @@ impl Watch {
         if lowest.is_finite() { mass * lowest } else { 0.0 }
     }
 
+    /// Largest growth of the energy so far, over what the start could give away; 0 for an empty start.
+    fn energy_growth(&self) -> f64 {
+        self.start
+            .filter(|(_, available)| *available > 0.0)
+            .map_or(0.0, |(start, available)| (self.energy - start) / available)
+    }
+
     /// Everything that does not hold, one line each. Called at the end of the run.
     pub fn violations(&self, solver: &Solver) -> Vec<String> {
         let mut lines = Vec::new();
@@ -99,8 +106,7 @@ impl Watch {
         at_most("density_error_max", self.density_error_max, self.expect.density_error_max);
         at_most("substeps_max", f64::from(self.substeps), self.expect.substeps_max.map(f64::from));
         at_most("speed_max", self.speed, self.expect.speed_max);
-        let (start, available) = self.start.unwrap_or((0.0, 1.0));
-        at_most("energy_growth", (self.energy - start) / available, self.expect.energy_growth);
+        at_most("energy_growth", self.energy_growth(), self.expect.energy_growth);
         if self.deepest.0 > TOUCHING * solver.spacing() {
             lines.push(format!(
                 "contained: something is {:.4} m inside a wall at {:.3} s",
@@ -114,12 +120,11 @@ impl Watch {
 
     /// The extremes so far, for people to read.
     pub fn summary(&self) -> String {
-        let (start, available) = self.start.unwrap_or((0.0, 1.0));
         format!(
             "density error {:.3} % mean, {:.2} % worst; energy {:+.2} %; fastest {:.2} m/s; {} substeps",
             100.0 * self.density_error_mean,
             100.0 * self.density_error_max,
-            100.0 * (self.energy - start) / available,
+            100.0 * self.energy_growth(),
             self.speed,
             self.substeps
         )

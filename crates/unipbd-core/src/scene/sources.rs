@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 pub struct Block {
     /// Name of the material.
     pub material: String,
-    /// Lower left corner [m]; the first particle sits half a spacing inside.
+    /// Lower left corner [m]; the first particle sits half a spacing inside. Particles inside bodies are left out.
     pub min: [f64; 2],
     /// Upper right corner [m].
     pub max: [f64; 2],
