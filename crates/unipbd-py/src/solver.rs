@@ -293,7 +293,7 @@ impl Solver {
         let mut world = self.lock(py)?;
         let rows = world.order().to_vec();
         let temperatures = world.running.solver.temperatures();
-        let known = !temperatures.is_empty() || world.scene.gas.first().is_some();
+        let known = !temperatures.is_empty() || !world.scene.gas.is_empty();
         Ok(known.then(|| arrays::gathered(py, temperatures, &rows, arrays::single)))
     }
 

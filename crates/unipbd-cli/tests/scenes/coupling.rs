@@ -1,6 +1,5 @@
 //! Bodies and liquid: floating, momentum, no leaks.
 
-
 use crate::support::{run_until, solver};
 
 const SPACING: f64 = 0.05;
