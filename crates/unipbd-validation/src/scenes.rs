@@ -1,8 +1,7 @@
 //! Scenes that several cases share. dx = 0.1 m and g = 9.81 m/s^2 unless a case says otherwise.
 
-use unipbd_core::bodies::BodyKind;
 use unipbd_core::scene::{
-    Block, BodyDescription, Emitter, HalfPlane, Liquid, Profile, RotationRule, Scene, Slip, SolverSettings, Tank,
+    Block, BodyDescription, Emitter, HalfPlane, Liquid, Profile, Scene, Slip, SolverSettings, Tank,
 };
 
 /// Spacing of the free-surface cases [m].
@@ -30,29 +29,7 @@ pub fn floor(friction: f64) -> HalfPlane {
 
 /// A body with an outline of its own to be set, and a name.
 pub fn body(name: &str, position: [f64; 2]) -> BodyDescription {
-    BodyDescription {
-        name: name.to_owned(),
-        kind: BodyKind::Dynamic,
-        radius: None,
-        size: None,
-        outline: None,
-        position,
-        angle_deg: 0.0,
-        velocity: [0.0; 2],
-        spin_deg: 0.0,
-        density: 1000.0,
-        mass: None,
-        friction: 0.5,
-        kinetic_friction: None,
-        rolling_friction: 0.0,
-        restitution: 0.0,
-        layers: vec![0],
-        collides_with: None,
-        rotation: RotationRule::Free,
-        gravity_factor: 1.0,
-        motion: None,
-        copies: None,
-    }
+    BodyDescription { name: name.to_owned(), ..BodyDescription::at(position) }
 }
 
 /// A nozzle that blows upwards.

@@ -47,7 +47,8 @@ impl BodyDescription {
         BodyDescription { outline: Some(outline), ..BodyDescription::at(position) }
     }
 
-    fn at(position: [f64; 2]) -> Self {
+    /// A body of water's density at a place [m], its outline still to be set.
+    pub fn at(position: [f64; 2]) -> Self {
         BodyDescription {
             name: String::new(),
             kind: BodyKind::Dynamic,
