@@ -17,7 +17,7 @@ use crate::particles::{NewParticle, OptionalColumns, Particles};
 use crate::phase::{MaterialIndex, Phase};
 use crate::rigid::RigidBodies;
 use crate::rng::Rng;
-use crate::scene::{GradientPoint, MaterialRef, Points, Problems, Scene, block_points, disc_points};
+use crate::scene::{GradientPoint, MaterialRef, Points, Problems, Scene, disc_points};
 use crate::sources::{EmitterSystem, RemovalRules};
 use crate::step::{BodyForce, Parts, Solver, SubstepRule};
 use crate::walls::Walls;
@@ -197,10 +197,11 @@ struct Filling<'a> {
 fn particles(scene: &Scene, seed: u64, optional: OptionalColumns) -> Particles {
     let mut particles = Particles::new(optional);
     let solids = bodies::solids(scene);
+    let waves = waves::Waves::new(scene, seed);
     for (number, block) in scene.block.iter().enumerate() {
         let filling = Filling {
             material: &block.material,
-            points: carve::outside(block_points(block, scene.spacing), &solids, scene.spacing),
+            points: carve::outside(waves.block_points(block, scene.spacing), &solids, scene.spacing),
             velocity: block.velocity,
             jitter: block.jitter,
             temperature: block.temperature,
@@ -244,11 +245,10 @@ impl Filling<'_> {
         let Some((index, material)) = scene.material(self.material) else { return };
         let mut rng = Rng::new(seed, self.stream);
         let mass = material.density() * scene.spacing * scene.spacing;
-        let waves = waves::Waves::new(scene, seed);
         for &point in &self.points {
             let shift = Vector64::new(rng.signed_unit(), rng.signed_unit()) * (self.jitter * scene.spacing);
             particles.push(NewParticle {
-                position: vector(waves.displaced(point) + shift),
+                position: vector(point + shift),
                 velocity: vector(self.velocity.into()),
                 inverse_mass: real(1.0 / mass),
                 material: index as MaterialIndex,

@@ -50,7 +50,6 @@ fn upright_boxes_float_at_their_draft() {
 }
 
 #[test]
-#[ignore = "not met: the interface grows far more slowly than theory"]
 fn heavy_over_light_overturns_at_the_known_rate() {
     holds("rayleigh_taylor");
 }

@@ -1,14 +1,14 @@
 use serde::{Deserialize, Serialize};
 
-/// A wave that displaces all particles of blocks and discs at the start, without changing their
-/// density: the displacement field of the potential-flow mode cos(2 pi x/wavelength + phase).
+/// A wave in the outlines of all blocks at the start: they are filled up to where the potential-flow mode
+/// cos(2 pi x/wavelength + phase) would have moved them. The lattice within stays as it is.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Wave {
     /// Height of the surface or interface that becomes wavy [m].
     pub level: f64,
-    /// Amplitude there [m].
+    /// Amplitude there, at least one spacing: the lattice shows no less [m].
     pub amplitude: f64,
     /// Wavelength [m].
     pub wavelength: f64,

@@ -46,7 +46,12 @@ fn check_waves(checker: &mut Checker) {
             let steepest = 0.1 * wave.wavelength;
             let hint = "at most a tenth of the wavelength: a steeper start is no longer at rest density";
             let allowed = Allowed::Between(-steepest, steepest);
-            checker.range(path.then("amplitude"), wave.amplitude, allowed, hint);
+            if checker.range(path.then("amplitude"), wave.amplitude, allowed, hint)
+                && wave.amplitude.abs() < checker.scene.spacing
+            {
+                let message = format!("must be one spacing ({} m) or more", number(checker.scene.spacing));
+                checker.problem(path.then("amplitude"), message, "a finer spacing shows smaller waves");
+            }
         }
         if wave.bottom.is_some_and(|bottom| bottom >= wave.level) {
             checker.problem(path.then("bottom"), "must lie below the level", "leave it out for a deep layer");
