@@ -4,7 +4,7 @@
 use unipbd_core::neighbors::{Grid, NeighborList, Periodic, PeriodicAxis};
 use unipbd_core::parallel::Parallelism;
 use unipbd_core::simd::{
-    CubicSpline, DensityInput, DensityOutput, Level, Mixed, Pairs, Poly6, Shape, Spiky, Weights, WendlandC2,
+    CubicSpline, DensityInput, DensityOutput, Level, Mixed, Pairs, Poly6, Reach, Shape, Spiky, Weights, WendlandC2,
     correction, density, difference_gradient, laplacian, repulsion, vorticity, xsph, xsph_mixed,
 };
 use unipbd_core::{Real, Vector};
@@ -90,7 +90,7 @@ fn all_passes(set: &Set, kernel: WendlandC2, level: Level, parallelism: Parallel
             density(pairs, kernel, input, DensityOutput { value: &mut a, gradient: &mut g, response: &mut b });
             results.push(("density", [a.clone(), flat(&g), b.clone()].concat()));
         }
-        repulsion(pairs, 0.8, &set.x, weights, &mut g);
+        repulsion(pairs, Reach { full: 0.3, none: 0.8 }, &set.x, weights, &mut g);
         results.push(("repulsion", flat(&g)));
         xsph(pairs, kernel, &set.x, &set.v, weights, &mut g);
         results.push(("xsph", flat(&g)));
@@ -212,13 +212,14 @@ fn passes_compute_their_formulas() {
                 let (mine, other) = (traits(i), traits(j));
                 let masses = mine.1 + other.1;
                 let exchange = if masses > 0.0 { (mine.0 + other.0) * mine.1 / masses } else { 0.0 };
-                let push = if r == 0.0 { 0.0 } else { (f64::from(0.8 as Real) - r).max(0.0) / r };
+                let push =
+                    if r == 0.0 { 0.0 } else { (f64::from(0.8 as Real) - r.max(f64::from(0.3 as Real))).max(0.0) / r };
                 let flip = if r > 0.0 {
                     0.0
                 } else if i < j {
-                    -0.8
+                    -0.5
                 } else {
-                    0.8
+                    0.5
                 };
                 let terms = [
                     w,
@@ -297,7 +298,7 @@ fn corrections_and_repulsion_push_both_of_a_pair_alike() {
     let size = |out: &[Vector]| out.iter().map(|v| v.length()).sum::<Real>();
     correction(pairs, kernel(), &set.x, &set.field, &mut out);
     assert!(total(&out) < 1e-5 * size(&out));
-    repulsion(pairs, 0.8, &set.x, Weights::Column(&set.weights), &mut out);
+    repulsion(pairs, Reach { full: 0.3, none: 0.8 }, &set.x, Weights::Column(&set.weights), &mut out);
     out.iter_mut().zip(&set.weights).for_each(|(v, &s)| *v *= s);
     assert!(size(&out) > 1.0 && total(&out) < 1e-5 * size(&out));
 }

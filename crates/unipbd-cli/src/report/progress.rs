@@ -86,7 +86,7 @@ impl Progress {
 
     fn remaining(&self, diagnostics: &Diagnostics) -> String {
         let left = (self.duration - diagnostics.time).max(0.0);
-        let speed = self.speed.simulated_per_wall;
+        let speed = self.speed.simulated_per_wall();
         if speed > 0.0 { remaining(left / speed) } else { "?".into() }
     }
 
@@ -97,7 +97,7 @@ impl Progress {
             self.duration,
             diagnostics.frame,
             self.frames,
-            significant(self.speed.simulated_per_wall),
+            significant(self.speed.simulated_per_wall()),
             self.remaining(diagnostics),
             count(diagnostics.particles()),
             percent(diagnostics.density_error_mean),
@@ -113,7 +113,7 @@ impl Progress {
             self.duration,
             diagnostics.frame,
             self.frames,
-            significant(self.speed.simulated_per_wall),
+            significant(self.speed.simulated_per_wall()),
             self.remaining(diagnostics),
             count(diagnostics.particles()),
             percent(diagnostics.density_error_mean),
@@ -136,29 +136,38 @@ fn choose_display(console: Console, frames: u64) -> Display {
     }
 }
 
-/// Simulated seconds per second of wall-clock time, smoothed over the last few seconds.
+/// Simulated seconds per second of wall-clock time, over the last few seconds: both are summed with a
+/// weight that falls with age, so that a few quick frames at the start do not count for more than they took.
 struct Speed {
-    simulated_per_wall: f64,
+    simulated: f64,
+    wall: f64,
     last: Instant,
     last_time: f64,
 }
 
 impl Speed {
     fn start() -> Self {
-        Speed { simulated_per_wall: 0.0, last: Instant::now(), last_time: 0.0 }
+        Speed { simulated: 0.0, wall: 0.0, last: Instant::now(), last_time: 0.0 }
     }
 
     fn add(&mut self, time: f64) {
-        const MEMORY: f64 = 3.0; // [s] of wall-clock time
         let wall = self.last.elapsed().as_secs_f64();
-        if wall <= 0.0 || time <= self.last_time {
-            return;
+        if time > self.last_time {
+            self.advance(time - self.last_time, wall);
+            self.last = Instant::now();
+            self.last_time = time;
         }
-        let now = (time - self.last_time) / wall;
-        let keep = if self.simulated_per_wall == 0.0 { 0.0 } else { (-wall / MEMORY).exp() };
-        self.simulated_per_wall = keep * self.simulated_per_wall + (1.0 - keep) * now;
-        self.last = Instant::now();
-        self.last_time = time;
+    }
+
+    fn advance(&mut self, simulated: f64, wall: f64) {
+        const MEMORY: f64 = 3.0; // [s] of wall-clock time
+        let keep = (-wall / MEMORY).exp();
+        self.simulated = keep * self.simulated + simulated;
+        self.wall = keep * self.wall + wall;
+    }
+
+    fn simulated_per_wall(&self) -> f64 {
+        if self.wall > 0.0 { self.simulated / self.wall } else { 0.0 }
     }
 }
 

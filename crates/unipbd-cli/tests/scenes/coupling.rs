@@ -120,7 +120,6 @@ fn check_containment(substeps: &str) {
 }
 
 #[test]
-#[ignore = "scenes this fast are refused: more than a kernel radius in a substep"]
 fn nothing_tunnels_through_walls_at_ten_times_the_speed_of_fall() {
     check_containment("\"auto\"");
     check_containment("8");

@@ -18,8 +18,6 @@ fn heavy_over_light(ratio: f64) -> Solver {
     solver(&format!(
         r#"
         spacing = {SPACING}
-        [solver]
-        relaxation = 0.4
         [domain]
         periodic_x = [0.0, {WIDTH}]
         [[liquid]]

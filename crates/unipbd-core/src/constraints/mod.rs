@@ -15,7 +15,7 @@ use std::ops::BitOr;
 
 pub use batch::{Batch, Constraint};
 pub use corrections::Corrections;
-pub use density::{Density, DensityMaterial, DensitySettings, Repulsion};
+pub use density::{Density, DensityMaterial, DensitySettings};
 
 use crate::math::{Real, Vector};
 use crate::neighbors::Neighbors;

@@ -25,7 +25,7 @@ mod run;
 mod x86;
 
 pub use passes::{
-    DensityInput, DensityOutput, Pairs, Weights, correction, density, difference_gradient, laplacian, repulsion,
+    DensityInput, DensityOutput, Pairs, Reach, Weights, correction, density, difference_gradient, laplacian, repulsion,
     vorticity, xsph, xsph_mixed,
 };
 pub use shapes::{Alternative, CubicSpline, Mixed, Number, Poly6, Shape, SlopeAsValue, Spiky, Tensile, WendlandC2};

@@ -9,8 +9,6 @@ const COURANT: f64 = 0.4;
 /// Error constant D of C_max = (D/omega) P dt^2/dx^2, measured for Wendland C2 at h = 2.5 dx; for
 /// other kernels it follows the response of the rest lattice.
 const ERROR_CONSTANT: f64 = 0.335;
-/// Relaxation of liquids, omega.
-const RELAXATION: f64 = 0.5;
 /// Height of a stack of bodies that one substep per frame can carry.
 const BODIES_PER_SUBSTEP: f64 = 2.5;
 /// The number of substeps stays while at least this part of it is wanted, and falls no faster: each
@@ -53,7 +51,7 @@ pub struct Choice {
 impl SubstepRule {
     /// The rule of a scene.
     pub fn new(scene: &Scene) -> Self {
-        let relaxation = scene.solver.relaxation.unwrap_or(RELAXATION);
+        let relaxation = scene.solver.relaxation_of_liquids();
         let iterations = f64::from(scene.solver.iterations.max(1));
         SubstepRule {
             substeps: scene.solver.substeps,

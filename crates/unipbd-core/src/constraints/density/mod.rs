@@ -8,7 +8,7 @@
 mod settings;
 mod solve;
 
-pub use settings::{DensityMaterial, DensitySettings, Repulsion};
+pub use settings::{DensityMaterial, DensitySettings};
 
 use super::{ConstraintGroup, Corrections, DensityColumns, Needs, Substep};
 use crate::kernel::Kernel;

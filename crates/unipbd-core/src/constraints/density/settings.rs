@@ -2,6 +2,7 @@ use crate::kernel::Kernel;
 use crate::math::{Real, real};
 use crate::phase::Phase;
 use crate::scene::{GradientPoint, KernelKind, MaterialRef, Scene};
+use crate::simd::Reach;
 
 /// Settings of the density group.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,7 +22,7 @@ pub struct DensitySettings {
     /// The inverse mass of all dense particles, where they have but one [1/kg].
     pub uniform_inverse_mass: Option<Real>,
     /// Pair repulsion, where any material has it.
-    pub repulsion: Option<Repulsion>,
+    pub repulsion: Option<Reach>,
     /// Artificial pressure of Macklin & Müller 2013 [m^2]; 0 is none.
     pub artificial_pressure: Real,
     /// Per material.
@@ -51,13 +52,6 @@ pub struct DensityMaterial {
     pub repulsion: Real,
 }
 
-/// Repulsion of pairs that have come too near.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Repulsion {
-    /// Distance below which a pair overlaps [m].
-    pub reach: Real,
-}
-
 /// The gas constraint is off below this density error: the edge of a plume.
 const GAS_GATE: f64 = -0.3;
 /// The denominator of a gas particle is at least this part of its value at rest.
@@ -66,12 +60,11 @@ const GAS_RESPONSE_FLOOR: f64 = 0.5;
 const SCRIPTED_RESPONSE_FLOOR: f64 = 0.5;
 /// Gas particles nearer than this many spacings repel each other...
 const REPULSION_REACH: f64 = 0.8;
+/// ...as much as at this many spacings where they are nearer still: what is thrown together in one
+/// substep must not be thrown apart in the next...
+const REPULSION_FULL: f64 = 0.6;
 /// ...by this part of their overlap per substep.
-const GAS_REPULSION: f64 = 0.3;
-/// Relaxation that is stable with a free surface.
-const LIQUID_RELAXATION: f64 = 0.5;
-/// Relaxation that is stable in filled domains: omega < 4/(3 lambda_max).
-const GAS_RELAXATION: f64 = 0.4;
+const GAS_REPULSION: f64 = 0.8;
 
 impl DensitySettings {
     /// The settings a scene asks for.
@@ -92,7 +85,7 @@ impl DensitySettings {
             gradients: scene.solver.gradients.unwrap_or(default_gradients),
             uniform_inverse_mass: uniform_mass(scene).map(|mass| real(1.0 / mass)),
             artificial_pressure: real(scene.solver.artificial_pressure * scene.spacing * scene.spacing),
-            repulsion: two_sided.then(|| Repulsion { reach: real(REPULSION_REACH * scene.spacing) }),
+            repulsion: two_sided.then(|| repulsion_reach(scene.spacing)),
             materials: scene.materials().map(|material| DensityMaterial::new(material, scene, rest_response)).collect(),
         }
     }
@@ -106,10 +99,10 @@ impl DensityMaterial {
         let lightest = two_sided.map(|material| material.density()).fold(f64::INFINITY, f64::min);
         let lightest = lightest * scene.spacing * scene.spacing;
         let mixing = real(scene.solver.constraint_mixing * rest_response / mass);
-        let relaxation = |default: f64| real(scene.solver.relaxation.unwrap_or(default));
+        let filled = real(scene.solver.relaxation_of_filled());
         match material.phase() {
             Phase::Liquid if material.is_two_sided() => DensityMaterial {
-                relaxation: relaxation(GAS_RELAXATION),
+                relaxation: filled,
                 multiplier_min: Real::NEG_INFINITY,
                 gate: Real::NEG_INFINITY,
                 response_min: real(GAS_RESPONSE_FLOOR * rest_response / mass),
@@ -121,7 +114,7 @@ impl DensityMaterial {
             Phase::Liquid => DensityMaterial {
                 mixing,
                 limited_mass: real(mass),
-                relaxation: relaxation(LIQUID_RELAXATION),
+                relaxation: real(scene.solver.relaxation_of_liquids()),
                 multiplier_min: 0.0,
                 gate: Real::NEG_INFINITY,
                 response_min: real(1e-6 * rest_response / mass),
@@ -131,7 +124,7 @@ impl DensityMaterial {
             Phase::Gas => DensityMaterial {
                 mixing,
                 limited_mass: 0.0,
-                relaxation: relaxation(GAS_RELAXATION),
+                relaxation: filled,
                 multiplier_min: Real::NEG_INFINITY,
                 gate: real(GAS_GATE),
                 response_min: real(GAS_RESPONSE_FLOOR * rest_response / mass),
@@ -150,6 +143,11 @@ impl DensityMaterial {
             },
         }
     }
+}
+
+/// Distances at which a repulsion begins and grows no more.
+fn repulsion_reach(spacing: f64) -> Reach {
+    Reach { full: real(REPULSION_FULL * spacing), none: real(REPULSION_REACH * spacing) }
 }
 
 /// The mass of every dense particle, if it is the same for all and none is moved by a script [kg].

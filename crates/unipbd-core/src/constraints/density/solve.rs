@@ -97,12 +97,12 @@ impl Density {
 
     /// Keeps gas particles apart: below 0.8 spacings a pair gives back a part of its overlap.
     pub(super) fn repel(&mut self, now: Substep<'_>, out: &mut Corrections) {
-        let Some(repulsion) = self.settings.repulsion else { return };
+        let Some(reach) = self.settings.repulsion else { return };
         let (materials, material_of) = (&self.settings.materials, now.particles.materials());
         self.strength.resize(now.particles.dense(), 0.0);
         now.parallelism.fill(&mut self.strength, |i| materials[usize::from(material_of[i])].repulsion);
         let positions = Density::gradient_positions(self.settings.gradients, &self.middle, now);
-        let (reach, strengths) = (repulsion.reach, Weights::Column(&self.strength));
+        let strengths = Weights::Column(&self.strength);
         simd::repulsion(now.pairs(), reach, positions, strengths, &mut self.sums.gradient);
         let (sums, strength) = (&self.sums.gradient, &self.strength);
         let inverse_masses = now.particles.inverse_masses();

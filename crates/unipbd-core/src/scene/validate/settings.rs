@@ -67,7 +67,7 @@ fn check_solver(checker: &mut Checker) {
     let settle = f64::from(solver.settle_substeps);
     checker.range(path("settle_substeps"), settle, Allowed::Between(0.0, 100_000.0), "the default is 40");
     let radius = solver.kernel_radius;
-    checker.range(path("kernel_radius"), radius, Allowed::Between(1.5, 4.0), "in spacings; the default is 2.5");
+    checker.range(path("kernel_radius"), radius, Allowed::Between(1.5, 4.0), "in spacings; the default is 3");
     let target = solver.target_compression;
     let hint = "a fraction: 0.01 aims at 1 % compression";
     checker.range(path("target_compression"), target, Allowed::Between(1e-6, 0.5), hint);
@@ -76,7 +76,7 @@ fn check_solver(checker: &mut Checker) {
     let pressure = solver.artificial_pressure;
     checker.range(path("artificial_pressure"), pressure, Allowed::Between(0.0, 1.0), "the default is 0");
     if let Some(relaxation) = solver.relaxation {
-        let hint = "0.5 suits liquids, 0.4 gas";
+        let hint = "leave it out: what is stable follows from the kernel radius";
         if checker.range(path("relaxation"), relaxation, Allowed::Positive, hint) {
             checker.range(path("relaxation"), relaxation, Allowed::Between(0.0, 2.0), hint);
         }

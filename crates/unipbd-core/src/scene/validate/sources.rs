@@ -53,9 +53,9 @@ fn check_points(checker: &mut Checker, path: &KeyPath, points: &Points) {
         let message = format!("there are {given} velocities for {wanted} positions");
         checker.problem(path.then("velocities"), message, "one for each position, or one `velocity` for all");
     }
-    check_speed(checker, path.then("velocity"), points.velocity[0].hypot(points.velocity[1]));
+    check_throw(checker, path.then("velocity"), points.velocity[0].hypot(points.velocity[1]));
     let fastest = points.velocities.iter().map(|v| v[0].hypot(v[1])).fold(0.0, f64::max);
-    check_speed(checker, path.then("velocities"), fastest);
+    check_throw(checker, path.then("velocities"), fastest);
     let smoke = checker.scene.smoke.iter().any(|smoke| smoke.name == points.material);
     if smoke && points.motion == PointMotion::Scripted {
         checker.problem(path.then("motion"), "smoke moves with its carrier, not by a script", "leave it out");
@@ -64,7 +64,7 @@ fn check_points(checker: &mut Checker, path: &KeyPath, points: &Points) {
 
 fn check_filling(checker: &mut Checker, path: &KeyPath, velocity: [f64; 2], jitter: f64) {
     checker.range(path.then("jitter"), jitter, Allowed::Between(0.0, 0.5), JITTER_HINT);
-    check_speed(checker, path.then("velocity"), velocity[0].hypot(velocity[1]));
+    check_throw(checker, path.then("velocity"), velocity[0].hypot(velocity[1]));
 }
 
 fn check_emitters(checker: &mut Checker) {
@@ -122,6 +122,20 @@ fn check_schedule(checker: &mut Checker, path: &KeyPath, emitter: &Emitter) {
     {
         let message = format!("must come after the start at {} s, found {} s", number(emitter.start), number(stop));
         checker.problem(path.then("stop"), message, "leave it out for an emitter that never stops");
+    }
+}
+
+/// Farthest that anything may fly in a frame [spacings]: beyond, a digit is wrong.
+const FARTHEST: f64 = 1e4;
+
+/// Notes a speed at the start that cannot be meant. Walls hold whatever is slower.
+fn check_throw(checker: &mut Checker, path: KeyPath, speed: f64) {
+    let scene = checker.scene;
+    let Some(spacing) = checker.spacing else { return };
+    let leap = speed / scene.fps / spacing;
+    if scene.fps >= 1.0 && leap.is_finite() && leap > FARTHEST {
+        let message = format!("{} m/s is too fast: {} spacings in one frame", rounded(speed), rounded(leap));
+        checker.problem(path, message, "lower the speed, or raise `fps`");
     }
 }
 

@@ -9,7 +9,7 @@ mod velocity;
 pub use correction::correction;
 pub use density::{DensityInput, DensityOutput, density};
 pub use fields::{difference_gradient, laplacian};
-pub use repulsion::repulsion;
+pub use repulsion::{Reach, repulsion};
 pub use velocity::{vorticity, xsph, xsph_mixed};
 
 use super::Level;

@@ -6,11 +6,20 @@ use crate::neighbors::NeighborList;
 use crate::simd::shapes::Number;
 use crate::simd::space::Space;
 
-/// out_i = sum_j s_j max(reach - r, 0) x_ij / r, for strengths s.
+/// Distances between which a repulsion grows as a pair comes closer [m].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Reach {
+    /// Below this it grows no more: a pair that is thrown together must not be thrown apart.
+    pub full: Real,
+    /// Above this there is none.
+    pub none: Real,
+}
+
+/// out_i = sum_j s_j max(none - max(r, full), 0) x_ij / r, for strengths s.
 ///
 /// Multiplied by s_i it is the same for both of a pair, up to its sign; a strength of zero leaves a
 /// row out. Coincident rows part along x, the lower row to the left.
-pub fn repulsion(pairs: Pairs<'_>, reach: Real, positions: &[Vector], strengths: Weights<'_>, out: &mut [Vector]) {
+pub fn repulsion(pairs: Pairs<'_>, reach: Reach, positions: &[Vector], strengths: Weights<'_>, out: &mut [Vector]) {
     let (weights, factor) = strengths.parts();
     in_space!(pairs, space => if strengths.is_column() {
         pairs.fill_vectors(&Repulsion::<_, true> { space, reach, positions, weights, factor }, out)
@@ -22,17 +31,18 @@ pub fn repulsion(pairs: Pairs<'_>, reach: Real, positions: &[Vector], strengths:
 #[derive(Clone, Copy)]
 struct Repulsion<'a, S, const WEIGHTED: bool> {
     space: S,
-    reach: Real,
+    reach: Reach,
     positions: &'a [Vector],
     weights: &'a [Real],
     factor: Real,
 }
 
 impl<S, const WEIGHTED: bool> Repulsion<'_, S, WEIGHTED> {
-    /// How far a pair overlaps.
+    /// How far a pair overlaps, as far as it counts.
     #[inline(always)]
     fn overlap<M: Number>(&self, square: M) -> M {
-        (square.like(self.reach) - square.sqrt()).larger(square.like(0.0))
+        let distance = square.sqrt().larger(square.like(self.reach.full));
+        (square.like(self.reach.none) - distance).larger(square.like(0.0))
     }
 
     /// `push` along the pair, or along x where the pair has no direction.
