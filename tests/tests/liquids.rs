@@ -9,10 +9,19 @@ fn energy(solver: &Solver) -> f64 {
     diagnostics.kinetic_energy + diagnostics.potential_energy
 }
 
+/// The default kernel radius and the faster one [spacings].
+const RADII: [f64; 2] = [3.0, 2.5];
+
 #[test]
 fn the_shipped_dam_break_stays_incompressible_and_gains_no_energy() {
     let scene = shipped("dam_break.toml").scene;
     assert_eq!((scene.spacing, scene.fps, scene.solver.substeps), (0.1, 60.0, Substeps::Fixed(8)));
+    RADII.into_iter().for_each(|radius| check_dam_break(&scene, radius));
+}
+
+fn check_dam_break(scene: &Scene, radius: f64) {
+    let mut scene = scene.clone();
+    scene.solver.kernel_radius = radius;
     let mut solver = build(&scene, 2);
     assert_eq!(solver.diagnostics().particles(), 800);
     let start = energy(&solver);
@@ -23,6 +32,7 @@ fn the_shipped_dam_break_stays_incompressible_and_gains_no_energy() {
         worst.add(diagnostics.density_error_max);
         gain.add(energy(solver) / start - 1.0);
     });
+    println!("h = {radius} dx");
     bars("dam break 20 x 40, n = 8", |bars| {
         bars.at_most("mean of max(C, 0)", mean.mean(), 0.003);
         bars.at_most("worst C", worst.max(), 0.06);
@@ -78,14 +88,18 @@ fn settle(scene: &Scene, seconds: u64) -> Rest {
 
 #[test]
 fn a_column_thirty_deep_stands_still_at_its_height() {
-    let mut scene = column(30, 20);
-    scene.solver.substeps = Substeps::Fixed(8);
-    let rest = settle(&scene, 10);
-    bars("column 30 deep, n = 8, 10 s", |bars| {
-        bars.at_most("C_max over the last second", rest.compression, 0.013);
-        bars.within("height over its start", rest.height / 3.0, 1.0 - 0.012, 1.0 + 0.012);
-        bars.at_most("v_rms over the last second [dx/s]", rest.speed / 0.1, 0.8);
-    });
+    for radius in RADII {
+        let mut scene = column(30, 20);
+        scene.solver.substeps = Substeps::Fixed(8);
+        scene.solver.kernel_radius = radius;
+        let rest = settle(&scene, 10);
+        println!("h = {radius} dx");
+        bars("column 30 deep, n = 8, 10 s", |bars| {
+            bars.at_most("C_max over the last second", rest.compression, 0.013);
+            bars.within("height over its start", rest.height / 3.0, 1.0 - 0.012, 1.0 + 0.012);
+            bars.at_most("v_rms over the last second [dx/s]", rest.speed / 0.1, 0.8);
+        });
+    }
 }
 
 #[test]
@@ -98,7 +112,10 @@ fn automatic_substeps_hold_the_compression_at_any_depth() {
         bars("column with automatic substeps, 10 s", |bars| {
             let name = |what: &str| format!("{depth} deep, n = {}: {what}", rest.substeps);
             bars.at_most(&name("C_max"), rest.compression, 0.013);
-            bars.within(&name("height"), rest.height / (0.1 * f64::from(depth)), 1.0 - 0.012, 1.0 + 0.012);
+            // The surface settles by a fifth of a spacing, however deep the water: where the kernel reaches
+            // beyond it, the topmost rows close up.
+            let surface = if depth < 30 { 0.2 / f64::from(depth) } else { 0.012 };
+            bars.within(&name("height"), rest.height / (0.1 * f64::from(depth)), 1.0 - surface, 1.0 + 0.012);
         });
     }
 }

@@ -59,7 +59,7 @@ pub struct Substep<'a> {
     pub dt: Real,
     /// Simulated time at the start of the substep [s].
     pub time: f64,
-    /// Largest pressure over density that a liquid may push with [m^2/s^2].
+    /// Largest pressure over density that a fluid may push with [m^2/s^2].
     pub pressure_limit: Real,
     /// The particles, at their predicted or projected positions.
     pub particles: &'a Particles,

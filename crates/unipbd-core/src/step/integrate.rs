@@ -10,7 +10,7 @@ use crate::neighbors::Periodic;
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
 use crate::phase::Phase;
-use crate::walls::Walls;
+use crate::walls::{Hit, Walls};
 
 /// Acceleration of a material by body forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -67,8 +67,15 @@ pub(super) fn apply(particles: &mut Particles, corrections: &Corrections, walls:
             if inverse_mass[row] > 0.0 {
                 displacement[k] += steps[row];
                 let place = start[row] + (displacement[k] + remainder[row]);
+                let mut touches = false;
                 for hit in walls.hits(place) {
-                    displacement[k] += out_of_wall(displacement[k], hit.normal, hit.depth, hit.friction);
+                    displacement[k] += hit.normal * hit.depth;
+                    touches = true;
+                }
+                // Friction comes after all walls: in a corner one wall must not undo the way that the
+                // other pushes back.
+                if touches {
+                    walls.hits(place).for_each(|hit| displacement[k] -= held_back(displacement[k], &hit));
                 }
             }
             // x = x_n + (u + rem).
@@ -77,15 +84,15 @@ pub(super) fn apply(particles: &mut Particles, corrections: &Corrections, walls:
     });
 }
 
-/// The way out of a wall, with Coulomb friction on the tangential part of the displacement.
+/// The part of a displacement along a wall that Coulomb friction takes away.
 #[inline]
-fn out_of_wall(displacement: Vector, normal: Vector, depth: Real, friction: Real) -> Vector {
-    let tangential = displacement - normal * displacement.dot(normal);
+fn held_back(displacement: Vector, hit: &Hit) -> Vector {
+    let tangential = displacement - hit.normal * displacement.dot(hit.normal);
     let length = tangential.length();
-    if friction == 0.0 || length == 0.0 {
-        return normal * depth;
+    if hit.friction == 0.0 || length == 0.0 {
+        return Vector::ZERO;
     }
-    normal * depth - tangential * (friction * depth / length).min(1.0)
+    tangential * (hit.friction * hit.depth / length).min(1.0)
 }
 
 /// v = u/dt, and the new remainders and ages; positions on a periodic axis return into the domain.

@@ -68,7 +68,7 @@ pub(crate) struct Clock {
     /// Substeps done of a frame that an error interrupted.
     pub done: u32,
     pub list_builds: u32,
-    /// Largest pressure over density that a liquid may push with [m^2/s^2].
+    /// Largest pressure over density that a fluid may push with [m^2/s^2].
     pub pressure_limit: f64,
     /// Whether the last frame was denied substeps.
     pub capped: bool,
@@ -306,7 +306,7 @@ impl World {
         let emitted = parts.emitters.as_ref().map_or(0.0, |emitters| emitters.speed_max(self.clock.time));
         let moving = if self.clock.step == 0 { self.fastest() } else { self.clock.speed };
         let chain = parts.rigid.as_ref().map_or(0.0, |rigid| rigid.support_chain(wide(parts.gravity)));
-        let expected = self.depth_pressure().max(self.dynamic_pressure());
+        let expected = self.depth_pressure(is_liquid).max(self.dynamic_pressure());
         Demand { speed: moving.max(emitted), chain, pressure: expected.max(self.multiplier_pressure() / UNEXPECTED) }
     }
 
@@ -317,8 +317,8 @@ impl World {
         f64::from(square.max(0.0)).sqrt()
     }
 
-    /// Pressure over density at the bottom of the liquid, from its extent along gravity [m^2/s^2].
-    fn depth_pressure(&self) -> f64 {
+    /// Pressure over density at the bottom of these phases, from their extent along gravity [m^2/s^2].
+    fn depth_pressure(&self, counted: fn(Phase) -> bool) -> f64 {
         let parts = &self.parts;
         let gravity = parts.gravity.length();
         if gravity == 0.0 {
@@ -326,7 +326,7 @@ impl World {
         }
         let (down, particles) = (parts.gravity / gravity, &parts.particles);
         let height = |row: usize| match particles.phase[row] {
-            Phase::Liquid => particles.position[row].dot(down),
+            phase if counted(phase) => particles.position[row].dot(down),
             _ => Real::NAN,
         };
         let low = parts.parallelism.max(particles.dense(), height);
@@ -343,24 +343,24 @@ impl World {
             return 0.0;
         }
         let particles = &self.parts.particles;
-        let (sum, count) = self.over_liquids(|row| {
+        let (sum, count) = self.over(is_liquid, |row| {
             let pressure = f64::from(particles.multiplier[row] * particles.inverse_mass[row]);
             pressure * pressure
         });
         (3.0 * sum / count.max(1.0)).sqrt() / (self.clock.dt * self.clock.dt)
     }
 
-    /// The pressure that a liquid as deep and as fast as this one can reach, with a wide margin
+    /// The pressure that a fluid as deep and as fast as this one can reach, with a wide margin
     /// [m^2/s^2]. The speed is the fourth root of the mean fourth power: jets count, single drops do not.
     fn pressure_limit(&self) -> f64 {
         let velocities = &self.parts.particles.velocity;
-        let (sum, count) = self.over_liquids(|row| {
+        let (sum, count) = self.over(Phase::is_fluid, |row| {
             let square = f64::from(velocities[row].length_squared());
             square * square
         });
         let dynamic = 0.5 * (sum / count.max(1.0)).sqrt();
         let least = LEAST_SPEED * self.parts.spacing / self.parts.frame_time;
-        PRESSURE_MARGIN * (self.depth_pressure() + dynamic) + least * least
+        PRESSURE_MARGIN * (self.depth_pressure(Phase::is_fluid) + dynamic) + least * least
     }
 
     /// Pressure over density that the motion of the liquids within themselves can bring about
@@ -368,22 +368,22 @@ impl World {
     /// fourth power.
     fn dynamic_pressure(&self) -> f64 {
         let velocities = &self.parts.particles.velocity;
-        let (x, count) = self.over_liquids(|row| f64::from(velocities[row].x));
-        let (y, _) = self.over_liquids(|row| f64::from(velocities[row].y));
+        let (x, count) = self.over(is_liquid, |row| f64::from(velocities[row].x));
+        let (y, _) = self.over(is_liquid, |row| f64::from(velocities[row].y));
         let mean = Vector64::new(x, y) / count.max(1.0);
-        let (sum, count) = self.over_liquids(|row| {
+        let (sum, count) = self.over(is_liquid, |row| {
             let square = (wide(velocities[row]) - mean).length_squared();
             square * square
         });
         (sum / count.max(1.0)).sqrt()
     }
 
-    /// Sum of a value over the liquid particles, and their number.
-    fn over_liquids(&self, value: impl Fn(usize) -> f64 + Sync) -> (f64, f64) {
+    /// Sum of a value over the particles of these phases, and their number.
+    fn over(&self, counted: fn(Phase) -> bool, value: impl Fn(usize) -> f64 + Sync) -> (f64, f64) {
         let particles = &self.parts.particles;
-        let liquid = |row: usize| particles.phase[row] == Phase::Liquid;
-        let sum = self.parts.parallelism.sum(particles.dense(), |row| if liquid(row) { value(row) } else { 0.0 });
-        (sum, self.parts.parallelism.sum(particles.dense(), |row| f64::from(u8::from(liquid(row)))))
+        let counts = |row: usize| counted(particles.phase[row]);
+        let sum = self.parts.parallelism.sum(particles.dense(), |row| if counts(row) { value(row) } else { 0.0 });
+        (sum, self.parts.parallelism.sum(particles.dense(), |row| f64::from(u8::from(counts(row)))))
     }
 
     /// Density of the heaviest liquid over that of the lightest: a light liquid carries a heavy one.
@@ -394,4 +394,8 @@ impl World {
         });
         if heavy > 0.0 { heavy / light } else { 1.0 }
     }
+}
+
+fn is_liquid(phase: Phase) -> bool {
+    phase == Phase::Liquid
 }

@@ -113,6 +113,11 @@ impl Walls {
         planes.chain(self.rectangles.iter().filter_map(move |rectangle| rectangle.hit(x)))
     }
 
+    /// Square of the largest speed of a wall along itself [m^2/s^2].
+    pub fn fastest_squared(&self) -> Real {
+        self.planes.iter().map(|plane| plane.velocity.length_squared()).fold(0.0, Real::max)
+    }
+
     /// Whether any wall holds a viscous fluid back.
     pub fn any_without_slip(&self) -> bool {
         let planes = self.planes.iter().map(|plane| plane.slip);

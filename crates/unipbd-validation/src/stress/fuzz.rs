@@ -115,8 +115,12 @@ pub fn random_scene(seed: u64) -> (Scene, f64) {
         scene.emitter.push(nozzle(&material, face, 3.0 * spacing, 0.3 * frame));
     }
     let fall = (2.0 * 9.81 * height * spacing).sqrt();
-    // Hot gas rises, light liquid under heavy squirts, a start that overlaps a little flies apart.
-    (scene, 6.0 * fall + 3.0 * speed + 6.0 * frame)
+    // Hot gas rises, light liquid under heavy squirts, a start that overlaps a little flies apart. What is
+    // caught between a heavy liquid and a wall leaves as fast as Bernoulli lets it: sqrt(2 p/rho).
+    let densities = || scene.materials().map(|material| material.density()).filter(|density| *density > 0.0);
+    let ratio = densities().fold(0.0, f64::max) / densities().fold(f64::INFINITY, f64::min);
+    let squirt = 2.0 * ratio.sqrt() * speed;
+    (scene, 6.0 * fall + 3.0 * speed + 6.0 * frame + squirt)
 }
 
 fn solver(random: &mut Random) -> SolverSettings {

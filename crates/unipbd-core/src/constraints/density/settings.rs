@@ -123,7 +123,7 @@ impl DensityMaterial {
             },
             Phase::Gas => DensityMaterial {
                 mixing,
-                limited_mass: 0.0,
+                limited_mass: real(mass),
                 relaxation: filled,
                 multiplier_min: Real::NEG_INFINITY,
                 gate: real(GAS_GATE),

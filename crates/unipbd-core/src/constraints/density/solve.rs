@@ -80,8 +80,13 @@ impl Density {
         let (sums, steps, walls) = (&self.sums.gradient, &self.step, &self.wall_gradient);
         let (volume, inverse_masses) = (self.settings.volume, now.particles.inverse_masses());
         let rows = now.particles.dense();
+        // The pressures that are believed accelerate to this speed at most (Bernoulli): what a step too
+        // long for them makes of a crushed heap ends there.
+        let farthest = 2.0 * now.pressure_limit * now.dt * now.dt;
         now.parallelism.update(&mut out.displacements_mut()[..rows], |i, displacement| {
-            *displacement -= inverse_masses[i] * (sums[i] * volume + walls[i] * steps[i]);
+            let step = inverse_masses[i] * (sums[i] * volume + walls[i] * steps[i]);
+            let square = step.length_squared();
+            *displacement -= if square > farthest { step * (farthest / square).sqrt() } else { step };
         });
     }
 
