@@ -55,6 +55,8 @@ def test_frames_become_data_frames(sim: up.Simulation, tmp_path: Path) -> None:
     assert log.to_pandas().index.name == "time"
     described = next(iter(log)).to_xarray_dict()
     assert described["data_vars"]["x"]["data"].shape == (100,) and "id" in described["coords"]
+    data = pytest.importorskip("xarray").Dataset.from_dict(described)
+    assert data.sizes == {"id": 100} and data["vy"].dims == ("id",) and data.attrs["time"] == 0.0
 
 
 def test_what_cannot_be_recorded_or_read_is_a_clear_error(sim: up.Simulation, tmp_path: Path) -> None:
