@@ -6,6 +6,7 @@ from typing import Any, TypedDict, final
 
 import numpy as np
 import numpy.typing as npt
+from typing_extensions import disjoint_base
 
 __all__ = [
     "LogReader",
@@ -121,6 +122,7 @@ class State:
     @property
     def particles(self) -> int: ...
 
+@disjoint_base
 class Particles:
     @property
     def time(self) -> float: ...

@@ -17,8 +17,8 @@ from __future__ import annotations
 
 try:
     from gymnasium.envs.registration import register
-except ImportError as cause:
-    raise ImportError('the environments need gymnasium: pip install "unipbd[gym]"') from cause
+except ImportError:
+    raise ImportError('the environments need gymnasium: pip install "unipbd[gym]"') from None
 
 from .balance import Balance
 from .pour import Pour

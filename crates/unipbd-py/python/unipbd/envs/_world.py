@@ -35,6 +35,6 @@ class World(gymnasium.Env[Vector, Vector]):
         """What lies in the observation space."""
         return np.clip(np.asarray(observation, dtype=np.float32), -self._high, self._high)
 
-    def render(self) -> npt.NDArray[np.uint8] | None:  # type: ignore[override]
+    def render(self) -> npt.NDArray[np.uint8] | None:
         """The present frame, uint8, shape (height, width, 3), with ``render_mode="rgb_array"``."""
         return self.simulation.render(width=320) if self.render_mode == "rgb_array" else None
