@@ -6,6 +6,7 @@ import dataclasses
 import importlib.metadata
 import inspect
 import re
+import shutil
 from collections.abc import Iterator
 from typing import Any, get_type_hints
 
@@ -79,7 +80,7 @@ def test_the_examples_of_the_docstrings_run(tmp_path: Any, monkeypatch: pytest.M
     from conftest import SCENES
 
     monkeypatch.chdir(tmp_path)
-    (tmp_path / "scenes").symlink_to(SCENES)
+    shutil.copytree(SCENES, tmp_path / "scenes")
     text = (up.__doc__ or "").split("    import unipbd as up", 1)[1].split("\nStart with", 1)[0]
     exec(inspect.cleandoc("import unipbd as up" + text.replace("2.0", "0.05")), {"print": lambda *_: None})
     assert (tmp_path / "frame.png").exists()
