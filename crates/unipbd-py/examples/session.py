@@ -19,14 +19,14 @@ def scene_with_a_pond() -> up.Scene:
     scene.spacing = 0.04
     scene.add_liquid("water", density=900.0)
     scene.materials["water"].density = 1000.0
-    xy = np.stack(np.meshgrid(np.arange(1.02, 1.8, 0.04), np.arange(0.02, 0.4, 0.04)), axis=-1).reshape(-1, 2)
+    xy = np.stack(np.meshgrid(np.arange(1.22, 2.0, 0.04), np.arange(0.02, 0.4, 0.04)), axis=-1).reshape(-1, 2)
     scene.add_particles("water", positions=xy, velocities=np.zeros_like(xy))
-    scene.add_body("raft", outline=[(0, 0), (0.4, 0), (0.4, 0.12), (0, 0.12)], density=400, at=(1.2, 0.4))
+    scene.add_body("raft", outline=[(0, 0), (0.4, 0), (0.4, 0.12), (0, 0.12)], density=400, at=(1.4, 0.4))
     scene.add_half_plane(point=(0, -0.2), normal=(0, 1))
-    scene.add_obstacle(min=(0.8, -0.2), max=(2.0, 0.0))
-    scene.add_obstacle(min=(0.8, 0.0), max=(1.0, 0.6))
-    scene.add_obstacle(min=(1.8, 0.0), max=(2.0, 0.6))
-    scene.view.min, scene.view.max = (-0.5, -0.2), (2.0, 1.4)
+    scene.add_obstacle(min=(1.0, -0.2), max=(2.2, 0.0))
+    scene.add_obstacle(min=(1.0, 0.0), max=(1.2, 0.6))
+    scene.add_obstacle(min=(2.0, 0.0), max=(2.2, 0.6))
+    scene.view.min, scene.view.max = (-1.0, -0.2), (2.2, 2.2)
     return scene
 
 
@@ -35,7 +35,7 @@ def main(folder: str = ".") -> None:
     assert up.Scene.from_toml(scene.to_toml()) == scene
     sim = scene.build(seed=7, threads=2)
 
-    center = np.array([1.4, 0.2], dtype=np.float32)
+    center = np.array([1.6, 0.2], dtype=np.float32)
     sim.on_substep(lambda s: s.add_acceleration(-0.5 * (s.positions - center)))
     log = Path(folder) / "run.mcap"
     with sim.record(log, fps=60):
@@ -55,7 +55,7 @@ def main(folder: str = ".") -> None:
     with sim.edit() as e:
         e.velocities[sim.ids_of("water")] = 0
         e.remove(sim.ids_of("smoke"))
-        e.add("water", positions=[(1.6, 0.8)], velocities=(0, -1))
+        e.add("water", positions=[(1.8, 0.8)], velocities=(0, -1))
     s0 = sim.state()
     sim.step(20)
     h = sim.state_hash()
