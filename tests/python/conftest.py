@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Generator
 from pathlib import Path
 
 import pytest
@@ -49,3 +50,15 @@ def plume() -> up.Scene:
 @pytest.fixture(scope="session")
 def full_tier() -> bool:
     return os.environ.get("UNIPBD_TIER") == "full"
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_runtest_makereport(item: pytest.Item, call: pytest.CallInfo[None]) -> Generator[None, pytest.TestReport, pytest.TestReport]:
+    """No panic of Rust goes unnoticed, whatever a test made of the exception."""
+    report = yield
+    said = "".join(text for name, text in report.sections if "stderr" in name)
+    panicked = "panicked at" in said or (call.excinfo is not None and call.excinfo.typename == "PanicException")
+    if panicked and report.passed:
+        report.outcome = "failed"
+        report.longrepr = "a panic of Rust:\n" + said
+    return report

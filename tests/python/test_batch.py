@@ -2,8 +2,14 @@
 
 from __future__ import annotations
 
+import copy
+import pickle
+from typing import Any
+
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import unipbd as up
 
@@ -68,3 +74,41 @@ def test_numbers_that_do_not_fit_are_refused(scene: up.Scene) -> None:
     with pytest.raises(ValueError):
         up.Batch(scene, n=2).step(-1)
     assert len(up.Batch([scene, scene])) == 2
+
+
+def test_worlds_with_hooks_are_stepped_though_another_diverges(scene: up.Scene) -> None:
+    def let_fly(one: up.Scene, number: int) -> None:
+        if number == 0:
+            one.tank.clear()
+            one.gravity = (0.0, -1e9)
+
+    batch = up.Batch(scene, n=3, change=let_fly)
+    batch[2].on_substep(lambda s: s.add_acceleration((0.0, 1.0)))
+    with pytest.raises(up.SolverError) as caught:
+        batch.step(3)
+    assert caught.value.world == 0 and [batch[1].frame, batch[2].frame] == [3, 3]
+    assert pickle.loads(pickle.dumps(caught.value)).world == 0
+
+
+@pytest.mark.parametrize("how", [copy.deepcopy, lambda batch: pickle.loads(pickle.dumps(batch))])
+def test_batches_are_copied(scene: up.Scene, how: Any) -> None:
+    batch = up.Batch(scene, n=3, threads=2)
+    batch.step(5)
+    clone = how(batch)
+    clone.step(5)
+    assert clone.threads == 2 and set(batch.times) == {5 / 60}
+    batch.step(5)
+    assert clone.state_hashes() == batch.state_hashes()
+
+
+@given(seeds=st.lists(st.integers(0, 2**63 - 1), min_size=1, max_size=4), threads=st.integers(1, 3))
+def test_any_seeds_and_threads_give_each_world_what_it_gets_alone(seeds: list[int], threads: int) -> None:
+    scene = up.Scene(spacing=0.06)
+    scene.add_gas("air")
+    scene.add_emitter("air", name="jet", position=(0, 0), width=0.3, speed=1.0)
+    batch = up.Batch(scene, n=len(seeds), seeds=seeds, threads=threads)
+    batch.step(8)
+    alone = [scene.build(seed=seed, threads=1) for seed in seeds]
+    for world in alone:
+        world.step(8)
+    assert batch.state_hashes() == [world.state_hash() for world in alone]

@@ -81,5 +81,55 @@ def test_kinematic_bodies_follow_their_script(pond: up.Scene) -> None:
     sim = pond.build(seed=1)
     sim.step(60)
     np.testing.assert_allclose(sim.bodies["raft"].position, (1.45, 0.75), atol=1e-6)
-    with pytest.raises(up.EditError, match="not dynamic"), sim.edit() as e:
+
+
+def test_kinematic_bodies_are_driven_step_by_step(pond: up.Scene) -> None:
+    pond.bodies["raft"].kind = "kinematic"
+    sim = pond.build(seed=1)
+    for frame in range(60):
+        with sim.edit() as e:
+            e.bodies["raft"].velocity = (0.5 * np.cos(np.pi * frame / 60), 0.0)
+            e.bodies["raft"].angular_velocity = 0.1
+        sim.step()
+    exact = np.sum(0.5 * np.cos(np.pi * np.arange(60) / 60)) / 60
+    np.testing.assert_allclose(sim.bodies["raft"].position, (1.2 + exact, 0.75), atol=1e-9)
+    assert sim.bodies["raft"].angle == pytest.approx(0.1)
+    clone = sim.copy()
+    clone.step(5)
+    sim.step(5)
+    assert clone.state_hash() == sim.state_hash() and clone.bodies["raft"].angle == pytest.approx(0.1 + 0.1 * 5 / 60)
+
+
+def test_static_bodies_stay_where_they_are(pond: up.Scene) -> None:
+    pond.bodies["raft"].kind = "static"
+    sim = pond.build(seed=1)
+    with pytest.raises(up.EditError, match="static"), sim.edit() as e:
         e.bodies["raft"].velocity = (1, 0)
+    sim.on_substep(lambda s: s.bodies["raft"].drive((1, 0)))
+    with pytest.raises(ValueError, match="static"):
+        sim.step()
+
+
+def test_hooks_push_and_drive_bodies() -> None:
+    scene = up.Scene(gravity=(0, 0))
+    scene.add_body("kite", at=(0, 0), size=(0.4, 0.2), density=10.0)
+    scene.add_body("door", at=(3, 0), size=(0.1, 1.0), kind="kinematic")
+    sim = scene.build()
+    kite, door = sim.bodies["kite"], sim.bodies["door"]
+    mass, inertia = kite.mass, kite.inertia
+
+    @sim.on_substep
+    def pull(s: up.Substep) -> None:
+        seen = s.bodies["kite"]
+        assert seen.position.shape == seen.velocity.shape == (2,) and not seen.position.flags.writeable
+        seen.push(mass * (np.array([1.0, 0.0]) - 4.0 * seen.position), torque=-4.0 * inertia * (seen.angle - 0.5))
+        s.bodies["door"].drive(angular_velocity=1.0)
+
+    sim.step(60)
+    exact = 0.25 * (1.0 - np.cos(2.0))
+    assert kite.position[0] == pytest.approx(exact, abs=0.02) and kite.position[1] == 0.0
+    assert kite.angle == pytest.approx(0.5 * (1.0 - np.cos(2.0)), abs=0.04)
+    assert door.angle == pytest.approx(1.0) and door.position.tolist() == [3.0, 0.0]
+    sim.on_substep(lambda s: s.bodies["door"].push((1.0, 0.0)))
+    with pytest.raises(ValueError, match="door"):
+        sim.step()

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import inspect
+import textwrap
+
 import numpy as np
 import pytest
 
@@ -121,6 +124,23 @@ def test_a_constraint_group_in_python_holds_a_pendulum() -> None:
     assert lowest < -0.98
     height_gone = sim.energy / (10.0 * 9.81)  # of a mass of 1000 kg/m^2 times (0.1 m)^2
     assert -0.05 < height_gone < 0.01
+
+
+def test_the_rod_of_the_documentation_holds_its_length_and_the_momentum() -> None:
+    doc = inspect.getdoc(up.Simulation.add_group) or ""
+    code = textwrap.dedent(doc.split("3 and 4::", 1)[1]).replace("[3, 4]", "[0, 2]")
+    scene = free_points([(0.0, 0.0), (3.0, 3.0), (0.5, 0.0)], velocities=[(0, 1), (0, 0), (0, -2)])
+    sim = scene.build()
+    exec(code, {"np": np, "sim": sim})
+    farthest = 0.0
+    for _ in range(60):
+        sim.step()
+        apart = np.linalg.norm(sim.positions[0] - sim.positions[2])
+        assert apart == pytest.approx(0.5, abs=2e-3)
+        farthest = max(farthest, float(sim.positions[0, 0]))
+    assert farthest > 0.45, "it turns"
+    np.testing.assert_allclose(sim.velocities[[0, 2]].sum(axis=0), (0.0, -1.0), atol=1e-3)
+    np.testing.assert_array_equal(sim.positions[1], (3.0, 3.0))
 
 
 def test_an_exception_in_a_group_comes_out_as_itself(sim: up.Simulation) -> None:

@@ -21,7 +21,8 @@ def test_a_recorded_run_reads_back_as_it_was(plume: up.Scene, tmp_path: Path) ->
     sim.step()
     log = up.read_log(path)
     assert len(log) == 16 and log.fps == 30 and log.seed == 2 and not log.truncated
-    assert log.materials == ["air", "smoke"] and log.phases == [up.GAS, up.SMOKE]
+    assert log.materials == list(plume.materials) == list(sim.materials)
+    assert log.phases == [material.phase for material in sim.materials.values()]
     assert log.scene == plume
     for frame, (time, positions, state_hash) in zip(log, expected, strict=True):
         assert frame.time == pytest.approx(time, abs=1e-6)
@@ -55,6 +56,8 @@ def test_frames_become_data_frames(sim: up.Simulation, tmp_path: Path) -> None:
     assert log.to_pandas().index.name == "time"
     described = next(iter(log)).to_xarray_dict()
     assert described["data_vars"]["x"]["data"].shape == (100,) and "id" in described["coords"]
+    data = pytest.importorskip("xarray").Dataset.from_dict(described)
+    assert data.sizes == {"id": 100} and data["vy"].dims == ("id",) and data.attrs["time"] == 0.0
 
 
 def test_what_cannot_be_recorded_or_read_is_a_clear_error(sim: up.Simulation, tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import logging
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -37,6 +38,7 @@ def test_arrays_have_the_shapes_and_types_they_are_said_to_have(plume: up.Scene)
         array = getattr(sim, name)
         assert array.dtype == dtype and array.shape == shape, name
         assert array.flags.c_contiguous and not array.flags.writeable, name
+    assert sim.pressures.dtype == np.float64 and sim.pressures.shape == (n,) and sim.pressures.max() > 0
     assert np.all(np.diff(sim.ids.astype(np.int64)) > 0)
     assert set(np.unique(sim.phases)) == {up.GAS, up.SMOKE}
     smoke = sim.positions[sim.phases == up.SMOKE]
@@ -55,6 +57,35 @@ def test_an_array_shows_its_moment_for_ever_and_refuses_writes(sim: up.Simulatio
     del sim
     gc.collect()
     np.testing.assert_array_equal(before, kept)
+
+
+def test_no_write_into_a_copy_looks_as_if_it_worked(sim: up.Simulation, tmp_path: Path) -> None:
+    water = sim.material("water")
+    batch = up.Batch(sim.scene, n=2)
+    with sim.record(tmp_path / "run.mcap", fields="all"):
+        sim.step()
+    frame = next(iter(up.read_log(tmp_path / "run.mcap")))
+    arrays = [water.positions, water.velocities, water.ids, water.mask, water.density_errors, sim.ids_of("water")]
+    arrays += [batch.positions, batch.velocities, batch.stack("ids"), batch.times, batch.counts]
+    arrays += [frame.positions, frame.ids, frame.phases, frame.velocities, sim.pressures, sim.walls[0]]
+    arrays += [sim.render(width=64)]
+    for array in arrays:
+        assert array is not None and array.flags.c_contiguous
+        with pytest.raises(ValueError):
+            array[0] = 0
+    with sim.edit() as e:
+        for reading in (e.velocities[3], e.velocities[[3, 4]], e.velocities[:][1:]):
+            with pytest.raises(ValueError, match=r"set e.velocities\[ids\]"):
+                reading[0] = 5.0
+        (2.0 * e.velocities[:])[0] = 1.0
+        e.velocities[3] *= 0.0
+    assert not sim.velocities[3].any()
+
+
+def test_walls_are_lines_to_draw(sim: up.Simulation) -> None:
+    (tank,) = sim.walls
+    assert tank.shape == (5, 2) and np.array_equal(tank[0], tank[-1])
+    assert (tank.min(axis=0).tolist(), tank.max(axis=0).tolist()) == ([0, 0], [2, 3])
 
 
 def test_rows_follow_ids_through_sorting_and_removal(sim: up.Simulation) -> None:
@@ -108,12 +139,32 @@ def test_python_and_the_command_reach_the_same_state(tmp_path: Path) -> None:
     np.testing.assert_array_equal(frames[-1].positions, sim.positions)
 
 
+def test_python_and_rust_and_its_command_reach_the_same_state(tmp_path: Path) -> None:
+    if shutil.which("cargo") is None:
+        pytest.skip("needs cargo")
+    path = SCENES / "floating_bodies.toml"
+    sim = up.Scene.load(path).build()
+    sim.step(20)
+    cargo = ["cargo", "run", "--quiet", "-p", "unipbd-cli"]
+    rust = [*cargo, "--example", "run_scene", "--", str(path), "20"]
+    shown = subprocess.run(rust, check=True, timeout=900, capture_output=True, text=True, cwd=ROOT).stdout
+    assert shown.split()[-1] == f"{sim.state_hash():016x}" and f" {len(sim)} particles" in shown
+    command = [*cargo, "--", "run", str(path), "--set", f"duration={20 / 60}", "--json", "--no-record"]
+    lines = subprocess.run(command, check=True, timeout=900, capture_output=True, text=True, cwd=ROOT).stdout
+    assert f'"{sim.state_hash():016x}"' in lines.splitlines()[-1]
+
+
 def test_threads_come_from_the_argument_or_the_environment(
     scene: up.Scene, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setenv("UNIPBD_THREADS", "3")
     assert scene.build().threads == 3
-    assert scene.build(threads=2).threads == 2
+    sim = scene.build(threads=2)
+    assert sim.threads == 2
+    sim.threads = 1
+    assert sim.threads == 1
+    with pytest.raises(ValueError):
+        sim.threads = 0
     monkeypatch.setenv("UNIPBD_THREADS", "many")
     with pytest.raises(ValueError, match="UNIPBD_THREADS"):
         scene.build()
@@ -165,6 +216,38 @@ def test_ctrl_c_stops_a_long_run_and_leaves_it_usable(sim: up.Simulation) -> Non
     frame = sim.frame
     sim.step()
     assert sim.frame == frame + 1
+
+
+@pytest.mark.skipif(os.name != "posix", reason="sends a signal")
+def test_ctrl_c_stops_within_a_long_frame_and_the_run_comes_to_the_same_end() -> None:
+    scene = pool()
+    scene.spacing = 0.0098
+    scene.solver.substeps = 60
+    scene.solver.settle_substeps = 0
+    sim, expected = scene.build(threads=1), scene.build(threads=1)
+    assert len(sim) > 10_000
+    begin = time.monotonic()
+    expected.step()
+    whole = time.monotonic() - begin
+    timer = threading.Timer(0.3 * whole, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    with pytest.raises(KeyboardInterrupt):
+        sim.step()
+    assert sim.frame == 0 and 0 < sim.substeps < 60
+    sim.step()
+    assert sim.frame == 1 and sim.state_hash() == expected.state_hash()
+
+
+@pytest.mark.skipif(os.name != "posix", reason="sends a signal")
+def test_ctrl_c_stops_a_batch_between_two_frames(scene: up.Scene) -> None:
+    batch = up.Batch(scene, n=3, threads=2)
+    timer = threading.Timer(0.3, os.kill, (os.getpid(), signal.SIGINT))
+    timer.start()
+    begin = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        batch.step(10_000_000)
+    assert time.monotonic() - begin < 5
+    assert len({world.frame for world in batch}) == 1
 
 
 def test_divergence_is_an_error_with_its_circumstances(scene: up.Scene) -> None:

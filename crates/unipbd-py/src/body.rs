@@ -25,13 +25,8 @@ pub fn motion<'py>(py: Python<'py>, body: &Body) -> PyResult<Bound<'py, PyDict>>
 /// What stays the same about a body.
 pub fn shape<'py>(py: Python<'py>, body: &Body) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
-    let kind = match body.kind {
-        BodyKind::Dynamic => "dynamic",
-        BodyKind::Kinematic => "kinematic",
-        BodyKind::Static => "static",
-    };
     dict.set_item("name", &body.name)?;
-    dict.set_item("kind", kind)?;
+    dict.set_item("kind", kind(body.kind))?;
     dict.set_item("mass", body.mass)?;
     dict.set_item("inertia", body.inertia)?;
     dict.set_item("radius", body.radius)?;
@@ -40,10 +35,20 @@ pub fn shape<'py>(py: Python<'py>, body: &Body) -> PyResult<Bound<'py, PyDict>> 
     Ok(dict)
 }
 
+/// The word for a kind of body.
+pub fn kind(kind: BodyKind) -> &'static str {
+    match kind {
+        BodyKind::Dynamic => "dynamic",
+        BodyKind::Kinematic => "kinematic",
+        BodyKind::Static => "static",
+    }
+}
+
 fn pair(py: Python<'_>, vector: Vector64) -> Bound<'_, PyAny> {
     arrays::fixed(py, vec![vector.x, vector.y]).into_any()
 }
 
-fn points<'py>(py: Python<'py>, points: &[Vector64]) -> PyResult<Bound<'py, PyAny>> {
+/// Points as an (N, 2) array.
+pub fn points<'py>(py: Python<'py>, points: &[Vector64]) -> PyResult<Bound<'py, PyAny>> {
     Ok(arrays::matrix(py, points.iter().flat_map(|point| [point.x, point.y]).collect())?.into_any())
 }

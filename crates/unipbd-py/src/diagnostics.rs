@@ -36,6 +36,8 @@ macro_rules! common {
 pub fn running<'py>(py: Python<'py>, of: &Diagnostics) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     common!(dict, of);
+    copy_entries!(dict, of: substeps_wanted, contact_penetration);
+    dict.set_item("substeps_reason", of.substeps_reason.name())?;
     dict.set_item("momentum", (of.momentum.x, of.momentum.y))?;
     dict.set_item("counts", counts(py, of.count_by_phase)?)?;
     Ok(dict)

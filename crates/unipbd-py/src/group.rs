@@ -2,13 +2,13 @@
 
 use std::sync::{Arc, Mutex, PoisonError};
 
-use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
+use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::prelude::*;
+use unipbd_core::Vector;
 use unipbd_core::constraints::{ConstraintGroup, Corrections, Needs, Substep};
-use unipbd_core::math::vector;
-use unipbd_core::{Real, Vector};
 
-use crate::{arrays, hook, order};
+use crate::arrays;
+use crate::particles::{Particles, checked};
 
 /// The first exception of any group, until the step is over.
 #[derive(Clone, Default)]
@@ -35,48 +35,17 @@ pub struct PythonGroup {
     pub failure: Failure,
 }
 
-/// One iteration as a Python group sees it. Arrays are in the order of ids.
-#[pyclass(frozen, module = "unipbd._native")]
+/// One iteration as a Python group sees it.
+#[pyclass(frozen, extends = Particles, module = "unipbd._native")]
 pub struct Projection {
-    time: f64,
-    dt: f64,
-    rows: Vec<u32>,
-    positions: Vec<Vector>,
     starts: Vec<Vector>,
-    ids: Vec<u32>,
-    inverse_masses: Vec<Real>,
 }
 
 #[pymethods]
 impl Projection {
     #[getter]
-    fn time(&self) -> f64 {
-        self.time
-    }
-
-    #[getter]
-    fn dt(&self) -> f64 {
-        self.dt
-    }
-
-    #[getter]
-    fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        arrays::vectors(py, &self.positions, &self.rows)
-    }
-
-    #[getter]
-    fn starts<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        arrays::vectors(py, &self.starts, &self.rows)
-    }
-
-    #[getter]
-    fn ids<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        arrays::gathered(py, &self.ids, &self.rows, |id| id)
-    }
-
-    #[getter]
-    fn inverse_masses<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f32>> {
-        arrays::gathered(py, &self.inverse_masses, &self.rows, arrays::single)
+    fn starts<'py>(slf: &Bound<'py, Self>) -> PyResult<Bound<'py, PyArray2<f32>>> {
+        slf.as_super().get().ordered(slf.py(), &slf.get().starts)
     }
 }
 
@@ -93,34 +62,24 @@ impl ConstraintGroup for PythonGroup {
         if self.failure.is_set() {
             return;
         }
-        let particles = now.particles;
-        let view = Projection {
-            time: now.time,
-            dt: f64::from(now.dt),
-            rows: order::by_id(particles.ids()),
-            positions: particles.positions().to_vec(),
-            starts: particles.starts().to_vec(),
-            ids: particles.ids().to_vec(),
-            inverse_masses: particles.inverse_masses().to_vec(),
-        };
-        if let Err(error) = Python::attach(|py| self.call(py, view, out)) {
+        if let Err(error) = Python::attach(|py| self.call(py, now, out)) {
             self.failure.set(error);
         }
     }
 }
 
 impl PythonGroup {
-    fn call(&self, py: Python<'_>, view: Projection, out: &mut Corrections) -> PyResult<()> {
-        let view = Py::new(py, view)?;
-        let wanted = self.project.call1(py, (view.clone_ref(py),))?;
+    fn call(&self, py: Python<'_>, now: Substep<'_>, out: &mut Corrections) -> PyResult<()> {
+        let seen = Particles::new(now.time, f64::from(now.dt), now.particles);
+        let view = Bound::new(py, (Projection { starts: now.particles.starts().to_vec() }, seen))?;
+        let wanted = self.project.call1(py, (&view,))?;
         if wanted.is_none(py) {
             return Ok(());
         }
-        let rows = &view.get().rows;
         let wanted: PyReadonlyArray2<'_, f64> = wanted.extract(py)?;
-        for (&row, step) in rows.iter().zip(hook::checked(&arrays::rows(&wanted), rows.len())?) {
-            out.add(row as usize, vector(step));
-        }
+        let particles = view.as_super().get();
+        let steps = checked(&arrays::rows(&wanted), particles.count())?;
+        particles.scatter(&steps, |row, step| out.add(row, step));
         Ok(())
     }
 }

@@ -1,67 +1,89 @@
-//! What a hook is given: the particles at the start of a substep.
+//! What a hook is given: the simulation at the start of a substep.
 
 use std::sync::{Mutex, PoisonError};
 
-use numpy::{PyArray1, PyArray2, PyReadonlyArray2};
+use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
+use unipbd_core::SubstepView;
+use unipbd_core::bodies::{BodyKind, Pose, Twist};
 use unipbd_core::math::{Vector64, vector};
-use unipbd_core::{MaterialIndex, Phase, SubstepView, Vector};
 
-use crate::{arrays, errors, order};
+use crate::particles::{Particles, checked};
+use crate::{arrays, body, errors};
 
-/// The simulation at the start of a substep. Arrays are in the order of ids.
-#[pyclass(frozen, module = "unipbd._native")]
+/// The simulation at the start of a substep.
+#[pyclass(frozen, extends = Particles, module = "unipbd._native")]
 pub struct Substep {
-    time: f64,
-    dt: f64,
     step: u64,
-    /// Rows in the order of their ids.
-    rows: Vec<u32>,
-    positions: Vec<Vector>,
-    velocities: Vec<Vector>,
-    ids: Vec<u32>,
-    phases: Vec<Phase>,
-    materials: Vec<MaterialIndex>,
+    bodies: Vec<Seen>,
     /// What the hook asks for; `None` once the hook has returned.
     wishes: Mutex<Option<Wishes>>,
 }
 
-/// What a hook asks for, in the order of ids.
-#[derive(Default)]
-pub struct Wishes {
-    accelerations: Vec<Vector64>,
-    velocities: Vec<(u32, Vector64)>,
+/// A body at the start of a substep.
+struct Seen {
+    name: String,
+    kind: BodyKind,
+    pose: Pose,
+    velocity: Twist,
 }
 
-impl Substep {
-    pub fn new(view: &SubstepView<'_>) -> Self {
-        Substep {
-            time: view.time(),
-            dt: view.dt(),
-            step: view.step(),
-            rows: order::by_id(view.ids()),
-            positions: view.positions().to_vec(),
-            velocities: view.velocities().to_vec(),
-            ids: view.ids().to_vec(),
-            phases: view.particles().phases().to_vec(),
-            materials: view.particles().materials().to_vec(),
-            wishes: Mutex::new(Some(Wishes::default())),
+/// What a hook asks for.
+#[derive(Default)]
+struct Wishes {
+    /// In the order of ids.
+    accelerations: Vec<Vector64>,
+    velocities: Vec<(u32, Vector64)>,
+    loads: Vec<(u32, Twist)>,
+    drives: Vec<(u32, Twist)>,
+}
+
+/// Calls a hook and carries out what it asks for.
+pub fn call(py: Python<'_>, hook: &Py<PyAny>, view: &mut SubstepView<'_>) -> PyResult<()> {
+    let particles = Particles::new(view.time(), view.dt(), view.particles());
+    let substep = Bound::new(py, (Substep::new(view), particles))?;
+    hook.call1(py, (&substep,))?;
+    let wishes = substep.get().wishes.lock().unwrap_or_else(PoisonError::into_inner).take();
+    if let Some(wishes) = wishes {
+        wishes.carry_out(substep.as_super().get(), view);
+    }
+    Ok(())
+}
+
+impl Wishes {
+    fn carry_out(self, particles: &Particles, view: &mut SubstepView<'_>) {
+        if !self.accelerations.is_empty() {
+            let accelerations = view.accelerations_mut();
+            particles.scatter(&self.accelerations, |row, wanted| accelerations[row] += wanted);
+        }
+        for (row, velocity) in self.velocities {
+            view.set_velocity(row as usize, vector(velocity));
+        }
+        for (body, velocity) in self.drives {
+            view.set_body_velocity(body, velocity);
+        }
+        for (body, load) in self.loads {
+            view.push_body(body, load.linear, load.angular);
         }
     }
 
-    /// Carries out what the hook asked for.
-    pub fn finish(&self, view: &mut SubstepView<'_>) {
-        let Some(wishes) = self.wishes.lock().unwrap_or_else(PoisonError::into_inner).take() else { return };
-        if !wishes.accelerations.is_empty() {
-            let accelerations = view.accelerations_mut();
-            for (&row, &wanted) in self.rows.iter().zip(&wishes.accelerations) {
-                accelerations[row as usize] += vector(wanted);
-            }
-        }
-        for (row, velocity) in wishes.velocities {
-            view.set_velocity(row as usize, vector(velocity));
-        }
+    fn accelerate(&mut self, count: usize, wanted: impl Iterator<Item = Vector64>) {
+        self.accelerations.resize(count, Vector64::ZERO);
+        self.accelerations.iter_mut().zip(wanted).for_each(|(sum, wanted)| *sum += wanted);
+    }
+}
+
+impl Substep {
+    fn new(view: &SubstepView<'_>) -> Self {
+        let seen = |(body, number): (&unipbd_core::bodies::Body, u32)| Seen {
+            name: body.name.clone(),
+            kind: body.kind,
+            pose: view.body_pose(number),
+            velocity: view.body_velocity(number),
+        };
+        let bodies = view.bodies().iter().zip(0..).map(seen).collect();
+        Substep { step: view.step(), bodies, wishes: Mutex::new(Some(Wishes::default())) }
     }
 
     fn with_wishes<T>(&self, py: Python<'_>, change: impl FnOnce(&mut Wishes) -> T) -> PyResult<T> {
@@ -71,88 +93,76 @@ impl Substep {
             None => Err(errors::other(py, "the substep is over: use it within the hook only")),
         }
     }
+
+    /// Whether this can be asked of a body.
+    fn check(&self, number: u32, asked: Twist, works: impl Fn(BodyKind) -> bool) -> PyResult<()> {
+        let body = self.bodies.get(number as usize).ok_or_else(|| PyValueError::new_err("there is no such body"))?;
+        if !works(body.kind) {
+            let (name, kind) = (&body.name, body::kind(body.kind));
+            return Err(PyValueError::new_err(format!("the body \"{name}\" is {kind}: that does not move it")));
+        }
+        let single = asked.angular as f32;
+        match checked(&[asked.linear], 1) {
+            Ok(_) if single.is_finite() => Ok(()),
+            _ => Err(PyValueError::new_err(format!("what is asked of the body \"{}\" is not finite", body.name))),
+        }
+    }
 }
 
 #[pymethods]
 impl Substep {
     #[getter]
-    fn time(&self) -> f64 {
-        self.time
-    }
-
-    #[getter]
-    fn dt(&self) -> f64 {
-        self.dt
-    }
-
-    #[getter]
     fn step(&self) -> u64 {
         self.step
     }
 
-    #[getter]
-    fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        arrays::vectors(py, &self.positions, &self.rows)
-    }
-
-    #[getter]
-    fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        arrays::vectors(py, &self.velocities, &self.rows)
-    }
-
-    #[getter]
-    fn ids<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u32>> {
-        arrays::gathered(py, &self.ids, &self.rows, |id| id)
-    }
-
-    #[getter]
-    fn phases<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u8>> {
-        arrays::gathered(py, &self.phases, &self.rows, |phase| phase as u8)
-    }
-
-    #[getter]
-    fn material_indices<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<u16>> {
-        arrays::gathered(py, &self.materials, &self.rows, |material| material)
+    /// Name, position, angle, velocity and angular velocity of each body.
+    fn bodies(&self) -> Vec<(String, [f64; 2], f64, [f64; 2], f64)> {
+        let seen = |body: &Seen| {
+            let (pose, velocity) = (body.pose, body.velocity);
+            let (position, linear) = (pose.position.into(), velocity.linear.into());
+            (body.name.clone(), position, pose.angle, linear, velocity.angular)
+        };
+        self.bodies.iter().map(seen).collect()
     }
 
     /// Adds one acceleration for each particle.
-    fn add_accelerations(&self, py: Python<'_>, accelerations: PyReadonlyArray2<'_, f64>) -> PyResult<()> {
-        let wanted = checked(&arrays::rows(&accelerations), self.rows.len())?;
-        self.with_wishes(py, |wishes| {
-            wishes.accelerations.resize(wanted.len(), Vector64::ZERO);
-            wishes.accelerations.iter_mut().zip(&wanted).for_each(|(sum, &wanted)| *sum += wanted);
-        })
+    fn add_accelerations(slf: &Bound<'_, Self>, accelerations: PyReadonlyArray2<'_, f64>) -> PyResult<()> {
+        let count = slf.as_super().get().count();
+        let wanted = checked(&arrays::rows(&accelerations), count)?;
+        slf.get().with_wishes(slf.py(), |wishes| wishes.accelerate(count, wanted.into_iter()))
     }
 
     /// Adds the same acceleration for every particle.
-    fn add_uniform_acceleration(&self, py: Python<'_>, x: f64, y: f64) -> PyResult<()> {
+    fn add_uniform_acceleration(slf: &Bound<'_, Self>, x: f64, y: f64) -> PyResult<()> {
+        let count = slf.as_super().get().count();
         let wanted = checked(&[Vector64::new(x, y)], 1)?[0];
-        self.with_wishes(py, |wishes| {
-            wishes.accelerations.resize(self.rows.len(), Vector64::ZERO);
-            wishes.accelerations.iter_mut().for_each(|sum| *sum += wanted);
-        })
+        slf.get().with_wishes(slf.py(), |wishes| wishes.accelerate(count, std::iter::repeat_n(wanted, count)))
     }
 
     /// Sets the velocities of these particles: how those moved by a script are moved.
-    fn set_velocities(&self, py: Python<'_>, ids: Vec<u32>, velocities: PyReadonlyArray2<'_, f64>) -> PyResult<()> {
+    fn set_velocities(slf: &Bound<'_, Self>, ids: Vec<u32>, velocities: PyReadonlyArray2<'_, f64>) -> PyResult<()> {
         let velocities = checked(&arrays::rows(&velocities), ids.len())?;
+        let particles = slf.as_super().get();
         let mut wanted = Vec::with_capacity(ids.len());
         for (id, velocity) in ids.into_iter().zip(velocities) {
-            let found = self.rows.binary_search_by_key(&id, |&row| self.ids[row as usize]);
-            let place = found.map_err(|_| errors::edit_message(py, &format!("there is no particle with id {id}")))?;
-            wanted.push((self.rows[place], velocity));
+            let unknown = || PyValueError::new_err(format!("there is no particle with id {id}"));
+            wanted.push((particles.row(id).ok_or_else(unknown)?, velocity));
         }
-        self.with_wishes(py, |wishes| wishes.velocities.extend(wanted))
+        slf.get().with_wishes(slf.py(), |wishes| wishes.velocities.extend(wanted))
     }
-}
 
-/// Vectors of the right number that the particles' precision can hold.
-pub fn checked(values: &[Vector64], count: usize) -> PyResult<Vec<Vector64>> {
-    if values.len() != count {
-        return Err(PyValueError::new_err(format!("{} rows are given for {count} particles", values.len())));
+    /// Lets a force and a torque act on a dynamic body.
+    fn push_body(&self, py: Python<'_>, body: u32, force: [f64; 2], torque: f64) -> PyResult<()> {
+        let load = Twist { linear: force.into(), angular: torque };
+        self.check(body, load, |kind| kind == BodyKind::Dynamic)?;
+        self.with_wishes(py, |wishes| wishes.loads.push((body, load)))
     }
-    match values.iter().position(|value| !vector(*value).is_finite()) {
-        Some(index) => Err(PyValueError::new_err(format!("row {index} is not finite"))),
-        None => Ok(values.to_vec()),
+
+    /// Sets the velocity of a body.
+    fn drive_body(&self, py: Python<'_>, body: u32, velocity: [f64; 2], angular_velocity: f64) -> PyResult<()> {
+        let velocity = Twist { linear: velocity.into(), angular: angular_velocity };
+        self.check(body, velocity, |kind| kind != BodyKind::Static)?;
+        self.with_wishes(py, |wishes| wishes.drives.push((body, velocity)))
     }
 }

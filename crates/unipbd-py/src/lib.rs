@@ -12,6 +12,7 @@ mod group;
 mod hook;
 mod log;
 mod order;
+mod particles;
 mod picture;
 mod pool;
 mod recording;
@@ -19,6 +20,7 @@ mod scene;
 mod solver;
 mod state;
 mod step;
+mod world;
 
 use pyo3::prelude::*;
 
@@ -27,6 +29,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add("__version__", env!("CARGO_PKG_VERSION"))?;
     module.add_class::<solver::Solver>()?;
     module.add_class::<state::State>()?;
+    module.add_class::<particles::Particles>()?;
     module.add_class::<hook::Substep>()?;
     module.add_class::<group::Projection>()?;
     module.add_class::<recording::Recorder>()?;

@@ -7,6 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use unipbd_cli::read::{Frame, Frames, Log};
 
+use crate::world::severity;
 use crate::{arrays, body, diagnostics, errors};
 
 /// The frames of a log, one after the other.
@@ -84,7 +85,7 @@ fn frame_dict(py: Python<'_>, frame: Frame) -> PyResult<Bound<'_, PyDict>> {
         bodies.append(entry)?;
     }
     dict.set_item("bodies", bodies)?;
-    let events = frame.events.iter().map(|event| (event.time, format!("{:?}", event.severity), event.message.clone()));
+    let events = frame.events.iter().map(|event| (event.time, severity(event.severity), event.message.clone()));
     dict.set_item("events", PyList::new(py, events)?)?;
     dict.set_item("diagnostics", frame.diagnostics.map(|numbers| diagnostics::recorded(py, &numbers)).transpose()?)?;
     Ok(dict)

@@ -8,7 +8,7 @@ use unipbd_cli::render::encode::png_bytes;
 use unipbd_cli::render::{Background, ColorBy, Image, RenderOptions, Renderer, Style, TimeStamp, View};
 
 use crate::errors;
-use crate::solver::World;
+use crate::world::World;
 
 /// How to draw, in words.
 #[derive(FromPyObject)]
@@ -23,7 +23,7 @@ pub struct Look {
 }
 
 impl Look {
-    fn options(&self, py: Python<'_>) -> PyResult<RenderOptions> {
+    fn options(&self) -> PyResult<RenderOptions> {
         let unknown = |what: &str, word: &str, known: &str| {
             pyo3::exceptions::PyValueError::new_err(format!("{what} is {known}, not \"{word}\""))
         };
@@ -39,7 +39,6 @@ impl Look {
             word => Err(unknown("background", word, "\"dark\" or \"light\"")),
         };
         let known = "\"material\", \"speed\", \"density\" or \"temperature\"";
-        let _ = py;
         Ok(RenderOptions {
             width: self.width,
             color_by: color_by.ok_or_else(|| unknown("color_by", &self.color_by, known))?,
@@ -54,7 +53,7 @@ impl Look {
 
 /// Draws the present frame and hands the picture to `take`.
 fn draw<T: Send>(py: Python<'_>, world: &World, look: &Look, take: impl FnOnce(&Image) -> T + Send) -> PyResult<T> {
-    let options = look.options(py)?;
+    let options = look.options()?;
     let drawn = py.detach(|| {
         let mut renderer = Renderer::new(&world.setting(), options);
         renderer.draw(&world.running.snapshot(Fields::ALL)).map(take)

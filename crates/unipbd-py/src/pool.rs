@@ -1,6 +1,7 @@
 //! Many worlds at once, each on one thread.
 
 use std::sync::{Mutex, PoisonError};
+use std::time::Instant;
 
 use pyo3::prelude::*;
 use rayon::prelude::*;
@@ -8,10 +9,9 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 use unipbd_core::SolverError;
 
 use crate::errors;
-use crate::solver::{Solver, World};
-
-/// Frames between two looks for Ctrl-C.
-const STRETCH: u64 = 8;
+use crate::solver::Solver;
+use crate::step::DEAF;
+use crate::world::World;
 
 /// Threads for a batch: made late, and anew in a forked child.
 #[pyclass(frozen, module = "unipbd._native")]
@@ -43,10 +43,12 @@ impl Pool {
         }
         let mut worlds: Vec<&mut World> = locked.iter_mut().map(|world| &mut **world).collect();
         let mut failed: Vec<Option<SolverError>> = vec![None; worlds.len()];
-        let mut left = frames;
+        // Frames between two looks for Ctrl-C.
+        let (mut left, mut stretch) = (frames, 1);
         while left > 0 {
-            let stretch = left.min(STRETCH);
+            stretch = left.min(stretch);
             left -= stretch;
+            let begin = Instant::now();
             py.detach(|| {
                 self.install(|| {
                     let running = worlds.par_iter_mut().zip(&mut failed).filter(|(_, failed)| failed.is_none());
@@ -56,6 +58,7 @@ impl Pool {
                 });
             });
             py.check_signals()?;
+            stretch = if begin.elapsed() < DEAF { 2 * stretch } else { (stretch / 2).max(1) };
         }
         match failed.iter().enumerate().find_map(|(world, failed)| Some((world, failed.as_ref()?))) {
             Some((world, error)) => {

@@ -1,52 +1,20 @@
 //! The simulation: what Python steps, looks at and edits.
 
-use std::path::Path;
 use std::sync::{Mutex, MutexGuard, TryLockError};
 
 use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use unipbd_cli::simulation::{Simulation, stage_names};
-use unipbd_cli::snapshot::Setting;
-use unipbd_core::observe::{Event, Severity};
-use unipbd_core::scene::Scene;
+use unipbd_core::observe::WallOutline;
 use unipbd_core::{BuildOptions, Phase};
 
 use crate::edit::{Addition, Values};
 use crate::group::{Failure, PythonGroup};
 use crate::picture::Look;
 use crate::state::State;
-use crate::{arrays, body, diagnostics, edit, errors, order, picture, scene};
-
-/// A run and what belongs to it.
-pub struct World {
-    pub running: Simulation,
-    pub scene: Scene,
-    /// Events that no log has yet.
-    pub unrecorded: Vec<Event>,
-    pub has_groups: bool,
-    pub failure: Failure,
-    /// Rows in the order of their ids, until they change.
-    pub order: Option<Vec<u32>>,
-}
-
-impl World {
-    /// What stays the same over the run.
-    pub fn setting(&self) -> Setting {
-        self.running.setting(&self.scene, Path::new("simulation"))
-    }
-
-    /// The scene as TOML text.
-    pub fn scene_text(&self, py: Python<'_>) -> PyResult<String> {
-        toml::to_string(&self.scene).map_err(|error| errors::other(py, &error.to_string()))
-    }
-
-    /// Rows in the order of their ids.
-    fn order(&mut self) -> &[u32] {
-        let ids = self.running.solver.ids();
-        self.order.get_or_insert_with(|| order::by_id(ids))
-    }
-}
+use crate::world::{World, severity};
+use crate::{arrays, body, diagnostics, edit, errors, picture, scene};
 
 /// A simulation. One thread at a time uses it.
 #[pyclass(frozen, module = "unipbd._native")]
@@ -63,6 +31,14 @@ impl Solver {
             Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
             Err(TryLockError::WouldBlock) => Err(errors::busy(py)),
         }
+    }
+
+    /// Reads from the run, with its rows in the order of their ids.
+    fn read<T>(&self, py: Python<'_>, take: impl FnOnce(&unipbd_core::Solver, &[u32]) -> T) -> PyResult<T> {
+        let mut world = self.lock(py)?;
+        world.order();
+        let world = &*world;
+        Ok(take(&world.running.solver, world.order.as_deref().unwrap_or_default()))
     }
 }
 
@@ -106,11 +82,7 @@ impl Solver {
         let mut world = self.lock(py)?;
         let events = world.running.solver.take_events();
         world.unrecorded.extend(events.iter().cloned());
-        let word = |severity| match severity {
-            Severity::Info => "info",
-            Severity::Warning => "warning",
-        };
-        Ok(events.into_iter().map(|event| (event.time, word(event.severity), event.message)).collect())
+        Ok(events.into_iter().map(|event| (event.time, severity(event.severity), event.message)).collect())
     }
 
     fn add_group(&self, py: Python<'_>, name: String, project: Py<PyAny>) -> PyResult<()> {
@@ -222,6 +194,11 @@ impl Solver {
         Ok(self.lock(py)?.running.solver.threads())
     }
 
+    fn set_threads(&self, py: Python<'_>, threads: usize) -> PyResult<()> {
+        self.lock(py)?.running.solver.set_threads(threads);
+        Ok(())
+    }
+
     #[getter]
     fn memory_bytes(&self, py: Python<'_>) -> PyResult<usize> {
         Ok(self.lock(py)?.running.solver.memory_bytes())
@@ -243,58 +220,47 @@ impl Solver {
     }
 
     fn positions<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let mut world = self.lock(py)?;
-        world.order();
-        let world = &*world;
-        arrays::vectors(py, world.running.solver.positions(), world.order.as_deref().unwrap_or_default())
+        self.read(py, |solver, rows| arrays::vectors(py, solver.positions(), rows))?
     }
 
     fn velocities<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f32>>> {
-        let mut world = self.lock(py)?;
-        world.order();
-        let world = &*world;
-        arrays::vectors(py, world.running.solver.velocities(), world.order.as_deref().unwrap_or_default())
+        self.read(py, |solver, rows| arrays::vectors(py, solver.velocities(), rows))?
     }
 
     fn ids<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u32>>> {
-        let mut world = self.lock(py)?;
-        let rows = world.order().to_vec();
-        Ok(arrays::gathered(py, world.running.solver.ids(), &rows, |id| id))
+        self.read(py, |solver, rows| arrays::gathered(py, solver.ids(), rows, |id| id))
     }
 
     fn phases<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u8>>> {
-        let mut world = self.lock(py)?;
-        let rows = world.order().to_vec();
-        Ok(arrays::gathered(py, world.running.solver.phases(), &rows, |phase| phase as u8))
+        self.read(py, |solver, rows| arrays::gathered(py, solver.phases(), rows, |phase| phase as u8))
     }
 
     fn material_indices<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<u16>>> {
-        let mut world = self.lock(py)?;
-        let rows = world.order().to_vec();
-        Ok(arrays::gathered(py, world.running.solver.material_indices(), &rows, |material| material))
+        self.read(py, |solver, rows| arrays::gathered(py, solver.material_indices(), rows, |material| material))
     }
 
     fn inverse_masses<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let mut world = self.lock(py)?;
-        let rows = world.order().to_vec();
-        Ok(arrays::gathered(py, world.running.solver.particles().inverse_masses(), &rows, arrays::single))
+        self.read(py, |solver, rows| arrays::gathered(py, solver.particles().inverse_masses(), rows, arrays::single))
     }
 
     fn density_errors<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f32>>> {
-        let mut world = self.lock(py)?;
-        let rows = world.order().to_vec();
-        let solver = &world.running.solver;
-        let errors = py.detach(|| solver.density_errors());
-        Ok(arrays::gathered(py, errors, &rows, arrays::single))
+        self.read(py, |solver, rows| {
+            let errors = py.detach(|| solver.density_errors());
+            arrays::gathered(py, errors, rows, arrays::single)
+        })
+    }
+
+    fn pressures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        self.read(py, |solver, rows| arrays::gathered(py, &solver.pressures(), rows, |pressure| pressure))
     }
 
     /// None where the scene has no temperatures.
     fn temperatures<'py>(&self, py: Python<'py>) -> PyResult<Option<Bound<'py, PyArray1<f32>>>> {
-        let mut world = self.lock(py)?;
-        let rows = world.order().to_vec();
-        let temperatures = world.running.solver.temperatures();
-        let known = !temperatures.is_empty() || !world.scene.gas.is_empty();
-        Ok(known.then(|| arrays::gathered(py, temperatures, &rows, arrays::single)))
+        let gas = !self.lock(py)?.scene.gas.is_empty();
+        self.read(py, |solver, rows| {
+            let temperatures = solver.temperatures();
+            (gas || !temperatures.is_empty()).then(|| arrays::gathered(py, temperatures, rows, arrays::single))
+        })
     }
 
     /// Name, phase, density and colour of each material, by index.
@@ -306,6 +272,17 @@ impl Solver {
             (material.name.clone(), material.phase as u8, material.density, color)
         };
         Ok(world.running.solver.materials().iter().map(shown).collect())
+    }
+
+    /// Walls as lines to draw; a closed one ends where it begins.
+    fn walls<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyAny>>> {
+        let world = self.lock(py)?;
+        let line = |wall: &WallOutline| {
+            let last = wall.points.first().filter(|_| wall.closed);
+            let points: Vec<_> = wall.points.iter().chain(last).copied().collect();
+            body::points(py, &points)
+        };
+        world.running.solver.wall_outlines().iter().map(line).collect()
     }
 
     fn body_names(&self, py: Python<'_>) -> PyResult<Vec<String>> {

@@ -5,12 +5,14 @@ use std::time::{Duration, Instant};
 use pyo3::prelude::*;
 use unipbd_core::{FrameReport, SolverError};
 
-use crate::errors;
-use crate::hook::Substep;
-use crate::solver::World;
+use crate::world::World;
+use crate::{errors, hook};
 
-/// Longest time without a look for Ctrl-C, where frames are shorter.
-const DEAF: Duration = Duration::from_millis(50);
+/// Longest time without a look for Ctrl-C, where substeps are shorter.
+pub const DEAF: Duration = Duration::from_millis(50);
+
+/// From this many particles on a frame may take long.
+const LONG: usize = 10_000;
 
 /// Why a frame was not finished.
 pub enum Stop {
@@ -50,23 +52,23 @@ impl World {
 
     /// One frame with everything that Python has hung into it.
     fn frame(&mut self, hooks: &[Py<PyAny>]) -> Result<FrameReport, Stop> {
-        if hooks.is_empty() && !self.has_groups {
+        if hooks.is_empty() && !self.has_groups && self.running.solver.ids().len() < LONG {
             return Ok(self.advance()?);
         }
         let failure = self.failure.clone();
         let failed = || failure.take().map_or(Ok(()), |error| Err(Stop::Python(error)));
+        let mut heard = Instant::now();
         let report = self.running.solver.step_frame_with(|view| {
             failed()?;
-            for hook in hooks {
-                let call = |py: Python<'_>| {
-                    let substep = Py::new(py, Substep::new(view))?;
-                    hook.call1(py, (substep.clone_ref(py),))?;
-                    Ok(substep)
-                };
-                let substep = Python::attach(call).map_err(Stop::Python)?;
-                substep.get().finish(view);
+            if heard.elapsed() > DEAF {
+                Python::attach(|py| py.check_signals()).map_err(Stop::Python)?;
+                heard = Instant::now();
             }
-            Ok(())
+            if hooks.is_empty() {
+                return Ok(());
+            }
+            let mut calls = |py: Python<'_>| hooks.iter().try_for_each(|hook| hook::call(py, hook, view));
+            Python::attach(&mut calls).map_err(Stop::Python)
         });
         self.note_order(&report);
         failed()?;

@@ -5,13 +5,14 @@ use unipbd_core::BuildOptions;
 use unipbd_core::scene::{Scene, Substeps};
 
 use super::estimate::{Cost, emitted, particles};
+use super::info::bodies;
 use super::scene::{build, load};
 use crate::args::CheckArgs;
 use crate::exit::{Exit, Failure};
 use crate::report::format::{bytes, count, duration, percent, plural};
 use crate::report::{Console, Form};
 use crate::scene_file::{self, Diagnostic, Origin};
-use crate::simulation::title;
+use crate::simulation::{Simulation, title};
 
 pub(super) fn check(arguments: &CheckArgs, console: Console) -> Result<Exit, Failure> {
     if console.form == Form::Json
@@ -32,7 +33,7 @@ pub(super) fn check(arguments: &CheckArgs, console: Console) -> Result<Exit, Fai
         Form::Json => console.object(&object(&title(&loaded.scene, &loaded.path), &loaded.scene, &cost))?,
         Form::Text => {
             console.line(format_args!("{}: no mistakes found", loaded.path.display()))?;
-            console.line(text(&loaded.scene, simulation.frames, &cost))?;
+            console.line(text(&loaded.scene, &simulation, &cost))?;
         }
     }
     for event in simulation.solver.take_events() {
@@ -44,7 +45,8 @@ pub(super) fn check(arguments: &CheckArgs, console: Console) -> Result<Exit, Fai
     }
 }
 
-fn text(scene: &Scene, frames: u64, cost: &Cost) -> String {
+fn text(scene: &Scene, simulation: &Simulation, cost: &Cost) -> String {
+    let frames = simulation.frames;
     let mut lines = vec![
         format!("  duration       {} s, {} of 1/{} s", scene.duration, plural(frames, "frame"), scene.fps),
         format!("  particles      {} at the start", count(cost.start.particles())),
@@ -56,6 +58,9 @@ fn text(scene: &Scene, frames: u64, cost: &Cost) -> String {
     ];
     if !scene.emitter.is_empty() {
         lines[1] += &format!(", up to {} emitted, at most {} at once", count(emitted(scene)), count(cost.peak));
+    }
+    if let Some(bodies) = bodies(simulation, scene) {
+        lines.insert(2, format!("  bodies         {bodies}"));
     }
     if let Ok(substeps) = cost.first_frame {
         let choice = match scene.solver.substeps {

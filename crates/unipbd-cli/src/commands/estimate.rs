@@ -1,16 +1,20 @@
-//! What a scene will cost: the estimate from its description, corrected by its first frame.
+//! What a scene will cost: its first second of wall-clock time is run, the rest follows from the
+//! number of particles over time.
 
 use std::time::{Duration, Instant};
 
 use serde_json::{Value, json};
 use unipbd_core::SolverError;
 use unipbd_core::observe::Diagnostics;
-use unipbd_core::scene::{BYTES_PER_PARTICLE, SECONDS_PER_PARTICLE_AND_SUBSTEP, Scene};
+use unipbd_core::scene::{BYTES_PER_PARTICLE, Scene};
 
 use crate::simulation::Simulation;
 
-/// Particles from which the first frame is a fair sample of the machine.
+/// Particles from which the memory of the start is a fair sample.
 const FAIR_SAMPLE: u64 = 500;
+
+/// Wall-clock time for which the scene is run.
+const PILOT: Duration = Duration::from_secs(1);
 
 /// Particles of a scene, as an object.
 pub(super) fn particles(scene: &Scene) -> Value {
@@ -50,33 +54,89 @@ pub(super) struct Cost {
 }
 
 impl Cost {
-    /// Looks at the start and at one frame.
+    /// Looks at the start, at the first frame, and at as many more as fit into [`PILOT`].
     pub fn of(scene: &Scene, simulation: &mut Simulation) -> Self {
-        let estimate = scene.estimate();
         let start = simulation.solver.diagnostics();
         let memory_at_start = simulation.solver.memory_bytes() as u64;
-        let clock = Instant::now();
-        let first_frame = simulation.next_frame().map_or(Ok(0), |frame| frame.map(|report| report.substeps));
-        let measured = clock.elapsed().as_secs_f64();
-        let particles = start.particles();
-        let expected = particles as f64 * f64::from(estimate.substeps) * SECONDS_PER_PARTICLE_AND_SUBSTEP;
-        let fair = particles >= FAIR_SAMPLE && expected > 0.0;
-        let factor = if fair { measured / expected } else { 1.0 };
-        let memory = if fair { memory_at_start.div_ceil(particles) } else { BYTES_PER_PARTICLE };
+        let pilot = Pilot::run(simulation);
+        let (particles, peak) = (start.particles(), scene.estimate().particles_at_peak);
+        let memory = if particles >= FAIR_SAMPLE { memory_at_start.div_ceil(particles) } else { BYTES_PER_PARTICLE };
         Cost {
-            peak: estimate.particles_at_peak,
-            memory_at_peak: memory_at_start.max(memory.saturating_mul(estimate.particles_at_peak)),
-            wall_time: Duration::try_from_secs_f64(estimate.cost_seconds * factor).unwrap_or(Duration::MAX),
+            peak,
+            memory_at_peak: memory_at_start.max(memory.saturating_mul(peak)),
+            wall_time: Duration::try_from_secs_f64(pilot.whole_run(scene)).unwrap_or(Duration::MAX),
             start,
-            first_frame,
+            first_frame: pilot.first_frame,
             memory_at_start,
         }
+    }
+}
+
+/// The beginning of a run.
+struct Pilot {
+    first_frame: Result<u32, SolverError>,
+    /// Simulated time [s] and wall-clock time [s] at the end of each frame.
+    frames: Vec<(f64, f64)>,
+}
+
+impl Pilot {
+    fn run(simulation: &mut Simulation) -> Self {
+        let clock = Instant::now();
+        let mut frames = vec![(0.0, 0.0)];
+        let mut first_frame = None;
+        while clock.elapsed() < PILOT
+            && let Some(frame) = simulation.next_frame()
+        {
+            let failed = frame.is_err();
+            first_frame.get_or_insert(frame.map(|report| report.substeps));
+            if failed {
+                break;
+            }
+            frames.push((simulation.solver.time(), clock.elapsed().as_secs_f64()));
+        }
+        Pilot { first_frame: first_frame.unwrap_or(Ok(0)), frames }
+    }
+
+    /// Wall-clock time of the whole run [s]: from here on a particle costs what it did in the second
+    /// half of the pilot, when the number of substeps had settled.
+    fn whole_run(&self, scene: &Scene) -> f64 {
+        let Some(&(time, spent)) = self.frames.last() else { return 0.0 };
+        let end = scene.duration;
+        if time >= end * (1.0 - 1e-9) || time == 0.0 {
+            return spent;
+        }
+        let half = self.frames.partition_point(|&(_, wall)| wall < 0.5 * spent).min(self.frames.len() - 2);
+        let (half_time, half_spent) = self.frames[half];
+        let work = |until: f64| Scene { duration: until, ..scene.clone() }.estimate().cost_seconds;
+        let (sampled, ahead) = (work(time) - work(half_time), work(end) - work(time));
+        let share = if sampled > 0.0 { ahead / sampled } else { (end - time) / (time - half_time) };
+        spent + (spent - half_spent) * share
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use unipbd_core::scene::{Block, Liquid};
+
+    #[test]
+    fn the_rest_of_a_run_costs_what_its_beginning_did() {
+        let scene = Scene {
+            duration: 10.0,
+            liquid: vec![Liquid { name: "water".into(), ..Liquid::default() }],
+            block: vec![Block::new("water", [0.0, 0.0], [1.0, 1.0])],
+            ..Scene::default()
+        };
+        let frames = vec![(0.0, 0.0), (0.5, 0.6), (1.0, 1.0)];
+        let pilot = Pilot { first_frame: Ok(4), frames };
+        // Half a second took 0.4 s, nine more take 18 times as long.
+        assert!((pilot.whole_run(&scene) - (1.0 + 18.0 * 0.4)).abs() < 1e-9);
+        let empty = Scene { duration: 10.0, ..Scene::default() };
+        assert!((pilot.whole_run(&empty) - (1.0 + 18.0 * 0.4)).abs() < 1e-9, "bodies alone, by time");
+        let over = Scene { duration: 1.0, ..scene };
+        assert_eq!(pilot.whole_run(&over), 1.0);
+    }
+
     use unipbd_core::scene::{Emitter, Gas, Profile, Sheath, Smoke, SmokeSource};
 
     #[test]

@@ -21,6 +21,8 @@ struct Script {
     /// Origin of the outline, seen from the centre of mass in body coordinates.
     origin: Vector64,
     motion: Motion,
+    /// Velocity that a caller gave a kinematic body: it replaces the script from then on.
+    driven: Option<Twist>,
     gravity_factor: f64,
 }
 
@@ -105,7 +107,7 @@ impl Bodies {
         self.reaches.push(shape.bounding_radius());
         self.sizes.push(moments.area.sqrt());
         let gravity_factor = spec.gravity_factor;
-        self.scripts.push(Script { start: spec.pose, origin: -moments.centroid, motion, gravity_factor });
+        self.scripts.push(Script { start: spec.pose, origin: -moments.centroid, motion, driven: None, gravity_factor });
         self.views.push(view(spec, &shape, (mass, inertia), self.spacing));
         let id = self.len() - 1;
         self.refresh_view(id);
@@ -182,7 +184,7 @@ impl Bodies {
     pub(crate) fn is_active(&self, id: usize) -> bool {
         match self.views[id].kind {
             BodyKind::Dynamic => !self.asleep[id],
-            BodyKind::Kinematic => !self.scripts[id].motion.is_still(),
+            BodyKind::Kinematic => self.scripts[id].driven.is_some() || !self.scripts[id].motion.is_still(),
             BodyKind::Static => false,
         }
     }
@@ -197,7 +199,10 @@ impl Bodies {
                     moved.linear += gravity * (self.scripts[id].gravity_factor * dt * dt);
                     moved
                 }
-                BodyKind::Kinematic => self.scripted_displacement(id, time + dt),
+                BodyKind::Kinematic => match self.scripts[id].driven {
+                    Some(velocity) => velocity.scaled(dt),
+                    None => self.scripted_displacement(id, time + dt),
+                },
                 _ => Twist::ZERO,
             };
         }
@@ -268,11 +273,28 @@ impl Bodies {
         self.responses[id] = self.awake_responses[id];
     }
 
-    /// Sets the velocity of a dynamic body; one that sleeps is woken with its island at the next substep.
+    /// Sets the velocity of a body. A dynamic one that sleeps is woken with its island at the next substep; a
+    /// kinematic one keeps the velocity, whatever its script says, until it is given another.
     pub fn set_velocity(&mut self, id: u32, velocity: Twist) {
-        self.velocities[id as usize] = velocity;
-        self.pushed[id as usize] = true;
-        self.refresh_view(id as usize);
+        let id = id as usize;
+        match self.views[id].kind {
+            BodyKind::Dynamic => self.pushed[id] = true,
+            BodyKind::Kinematic => self.scripts[id].driven = Some(velocity),
+            BodyKind::Static => return,
+        }
+        self.velocities[id] = velocity;
+        self.refresh_view(id);
+    }
+
+    /// Lets a force [N] and a torque about the centre of mass [N m] act on a dynamic body over the
+    /// substep of length `dt` that is to come. One that sleeps is woken.
+    pub fn accelerate(&mut self, id: u32, force: Vector64, torque: f64, dt: f64) {
+        let response = self.awake_responses[id as usize];
+        let change = Twist { linear: force * (response.linear * dt), angular: torque * (response.angular * dt) };
+        if change != Twist::ZERO {
+            self.velocities[id as usize] += change;
+            self.pushed[id as usize] = true;
+        }
     }
 
     fn refresh_view(&mut self, id: usize) {

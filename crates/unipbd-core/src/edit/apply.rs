@@ -27,9 +27,7 @@ impl Solver {
         let mut rows = RowIndex::default();
         rows.rebuild(self.ids());
         edit.changes.iter().for_each(|change| self.change(change, &rows));
-        if let Some(rigid) = &mut self.world.parts.rigid {
-            edit.bodies.iter().for_each(|&(body, velocity)| rigid.bodies.set_velocity(body, velocity));
-        }
+        self.drive(edit, &rows);
         let mut removed: Vec<u32> = edit.removals.iter().filter_map(|&id| rows.row(id)).collect();
         removed.sort_unstable();
         self.world.parts.particles.remove_rows(&removed);
@@ -39,6 +37,15 @@ impl Solver {
         let population = if same { Population::Same } else { Population::Changed };
         self.on_threads(|world| world.edited(population));
         Ok(first..last)
+    }
+
+    /// Gives bodies their velocities, and their samples too: the next frame goes by the fastest particle.
+    fn drive(&mut self, edit: &Edit, rows: &RowIndex) {
+        let parts = &mut self.world.parts;
+        if let Some(rigid) = parts.rigid.as_mut().filter(|_| !edit.bodies.is_empty()) {
+            edit.bodies.iter().for_each(|&(body, velocity)| rigid.bodies.set_velocity(body, velocity));
+            rigid.settle_samples(&mut parts.particles, rows);
+        }
     }
 
     fn change(&mut self, change: &Change, rows: &RowIndex) {

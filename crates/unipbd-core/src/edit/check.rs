@@ -92,8 +92,8 @@ impl<'a> Checker<'a> {
     fn body(&self, id: u32, velocity: &Twist) -> Result<(), EditError> {
         let bodies = self.solver.bodies();
         let body = bodies.get(id as usize).ok_or_else(|| EditError::Unfit(format!("there is no body {id}")))?;
-        if body.kind != BodyKind::Dynamic {
-            return Err(EditError::Unfit(format!("the body \"{}\" is not dynamic: nothing pushes it", body.name)));
+        if body.kind == BodyKind::Static {
+            return Err(EditError::Unfit(format!("the body \"{}\" is static: it never moves", body.name)));
         }
         self.velocities(&[velocity.linear])?;
         finite("angular velocity", 0, velocity.angular)

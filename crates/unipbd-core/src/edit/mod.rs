@@ -106,7 +106,8 @@ impl Edit {
         self.change(ids, Values::Motion(motion))
     }
 
-    /// Gives a dynamic body this velocity of its centre of mass [m/s] and angular velocity [rad/s].
+    /// Gives a body this velocity of its centre of mass [m/s] and angular velocity [rad/s]. A dynamic body
+    /// goes on from there; a kinematic one keeps it, whatever its script says, until it is given another.
     /// Bodies are named by their place in [`Solver::bodies`](crate::Solver::bodies).
     #[must_use]
     pub fn set_body_velocity(mut self, body: u32, velocity: Vector64, angular_velocity: f64) -> Self {

@@ -1,5 +1,6 @@
 use super::world::World;
-use crate::math::{Real, Vector};
+use crate::bodies::{Bodies, Body, Pose, Twist};
+use crate::math::{Real, Vector, Vector64};
 use crate::observe::Material;
 use crate::particles::Particles;
 
@@ -78,5 +79,54 @@ impl<'a> SubstepView<'a> {
     /// Inverse mass of one row [1/kg]; 0 where it is moved by a script.
     pub fn inverse_mass(&self, row: usize) -> Real {
         self.particles().inverse_masses()[row]
+    }
+    /// Rigid bodies as they were when the frame began; where they are now say [`SubstepView::body_pose`]
+    /// and [`SubstepView::body_velocity`].
+    pub fn bodies(&self) -> &[Body] {
+        self.world.parts.rigid.as_ref().map_or(&[], |rigid| rigid.views())
+    }
+
+    /// Centre of mass and angle of a body, named by its place in [`SubstepView::bodies`].
+    ///
+    /// # Panics
+    /// Where there is no such body.
+    pub fn body_pose(&self, body: u32) -> Pose {
+        self.all_bodies().pose(body)
+    }
+
+    /// Velocity of the centre of mass and angular velocity of a body.
+    ///
+    /// # Panics
+    /// Where there is no such body.
+    pub fn body_velocity(&self, body: u32) -> Twist {
+        self.all_bodies().velocity(body)
+    }
+
+    /// Lets a force [N] and a torque about the centre of mass [N m] act on a body in this substep. Only a
+    /// dynamic one is moved.
+    ///
+    /// # Panics
+    /// Where there is no such body, or the load is not finite.
+    pub fn push_body(&mut self, body: u32, force: Vector64, torque: f64) {
+        assert!(force.is_finite() && torque.is_finite(), "loads are finite");
+        let dt = self.dt();
+        self.all_bodies_mut().accelerate(body, force, torque, dt);
+    }
+
+    /// Sets the velocity of a body: how one moved by a script is moved. It keeps it until it is given another.
+    ///
+    /// # Panics
+    /// Where there is no such body, or the velocity is not finite.
+    pub fn set_body_velocity(&mut self, body: u32, velocity: Twist) {
+        assert!(velocity.linear.is_finite() && velocity.angular.is_finite(), "velocities are finite");
+        self.all_bodies_mut().set_velocity(body, velocity);
+    }
+
+    fn all_bodies(&self) -> &Bodies {
+        &self.world.parts.rigid.as_ref().expect("the scene has bodies").bodies
+    }
+
+    fn all_bodies_mut(&mut self) -> &mut Bodies {
+        &mut self.world.parts.rigid.as_mut().expect("the scene has bodies").bodies
     }
 }

@@ -21,7 +21,9 @@ taken at, and a write into one raises ValueError. To change particles use `Simul
 from __future__ import annotations
 
 from ._batch import Batch
-from ._edit import BodyEdit, Column, Edit
+from ._body import Body
+from ._body_edit import BodyEdit
+from ._edit import Column, Edit
 from ._errors import (
     BusyError,
     EditError,
@@ -32,14 +34,17 @@ from ._errors import (
     StateError,
     UnipbdError,
 )
+from ._frame import Frame
 from ._log import Log, LogFrame, read_log
+from ._material import Material
 from ._native import __version__
 from ._phase import GAS, LIQUID, RIGID, SMOKE, SOLID, Phase
 from ._recording import Recording
-from ._scene import Scene, Table
-from ._simulation import Body, Frame, Material, Simulation
+from ._scene import Scene
+from ._simulation import Simulation
 from ._state import State
-from ._substep import Projection, Substep
+from ._substep import Projection, Substep, SubstepBody
+from ._tables import Table, Tables
 
 __all__ = [
     "GAS",
@@ -70,7 +75,9 @@ __all__ = [
     "State",
     "StateError",
     "Substep",
+    "SubstepBody",
     "Table",
+    "Tables",
     "UnipbdError",
     "__version__",
     "read_log",

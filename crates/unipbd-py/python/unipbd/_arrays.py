@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Any, TypeAlias
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 import numpy.typing as npt
@@ -10,6 +10,13 @@ import numpy.typing as npt
 Floats: TypeAlias = npt.NDArray[np.float32]
 Doubles: TypeAlias = npt.NDArray[np.float64]
 Ids: TypeAlias = npt.NDArray[np.uint32]
+Array = TypeVar("Array", bound=npt.NDArray[Any])
+
+
+def fixed(array: Array) -> Array:
+    """The array, no longer to be written to: a write into a copy must not look as if it changed the run."""
+    array.flags.writeable = False
+    return array
 
 
 def numbers(values: npt.ArrayLike, what: str, error: type[Exception]) -> Doubles:
@@ -42,6 +49,14 @@ def pairs(values: npt.ArrayLike, count: int, what: str, error: type[Exception]) 
         return np.ascontiguousarray(np.broadcast_to(array, (count, 2)))
     except ValueError:
         raise error(f"{what} of shape {array.shape} do not fit {count} particles: ({count}, 2) is wanted") from None
+
+
+def pair(values: npt.ArrayLike, what: str, error: type[Exception]) -> list[float]:
+    """One vector."""
+    array = numbers(values, what, error)
+    if array.shape != (2,):
+        raise error(f"{what} must have shape (2,), not {array.shape}")
+    return [float(array[0]), float(array[1])]
 
 
 def plain(value: Any) -> Any:

@@ -9,8 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
+from ._arrays import fixed
+from ._errors import SolverError
 from ._scene import Scene
-from ._simulation import Simulation, thread_count
+from ._simulation import Simulation
+from ._threads import thread_count
 
 
 class Batch(Sequence[Simulation]):
@@ -61,20 +64,30 @@ class Batch(Sequence[Simulation]):
         """
         if frames < 0:
             raise ValueError(f"frames must not be negative: {frames}")
-        alone = [world for world in self._worlds if world._hooks or world._groups or world._recordings]
-        together = [world for world in self._worlds if not (world._hooks or world._groups or world._recordings)]
+        errors = [self._step_together(frames)]
+        for number, world in enumerate(self._worlds):
+            if _needs_python(world):
+                try:
+                    world.step(frames)
+                except SolverError as error:
+                    error.world = number
+                    errors.append(error)
+        diverged = [error for error in errors if error is not None]
+        if diverged:
+            raise min(diverged, key=lambda error: error.world or 0)
+
+    def _step_together(self, frames: int) -> SolverError | None:
+        """Steps all worlds that need nothing from Python; returns the error of the first that diverged."""
+        numbers = [number for number, world in enumerate(self._worlds) if not _needs_python(world)]
         try:
-            self._pool.step([world._native for world in together], frames)
-        except Exception as error:
-            index = getattr(error, "world", None)
-            if index is not None:
-                error.world = self._worlds.index(together[index])  # type: ignore[attr-defined]
-            raise
+            self._pool.step([self._worlds[number]._native for number in numbers], frames)
+        except SolverError as error:
+            error.world = numbers[error.world or 0]
+            return error
         finally:
-            for world in together:
-                world._tell()
-        for world in alone:
-            world.step(frames)
+            for number in numbers:
+                self._worlds[number]._tell()
+        return None
 
     @property
     def threads(self) -> int:
@@ -83,13 +96,13 @@ class Batch(Sequence[Simulation]):
 
     @property
     def times(self) -> npt.NDArray[np.float64]:
-        """Simulated time of each world [s], shape (n,)."""
-        return np.array([world.time for world in self._worlds])
+        """Simulated time of each world [s], float64, shape (n,)."""
+        return fixed(np.array([world.time for world in self._worlds]))
 
     @property
     def counts(self) -> npt.NDArray[np.int64]:
-        """Number of particles of each world, shape (n,)."""
-        return np.array([len(world) for world in self._worlds])
+        """Number of particles of each world, int64, shape (n,)."""
+        return fixed(np.array([len(world) for world in self._worlds]))
 
     def state_hashes(self) -> list[int]:
         """State hash of each world."""
@@ -100,16 +113,16 @@ class Batch(Sequence[Simulation]):
         many particles as each other, a list of arrays otherwise."""
         arrays = [getattr(world, column) for world in self._worlds]
         same = all(array.shape == arrays[0].shape for array in arrays)
-        return np.stack(arrays) if same else arrays
+        return fixed(np.stack(arrays)) if same else arrays
 
     @property
     def positions(self) -> Any:
-        """Positions [m], shape (n, N, 2), or a list of arrays (N_i, 2)."""
+        """Positions [m], float32, shape (n, N, 2), or a list of arrays (N_i, 2)."""
         return self.stack("positions")
 
     @property
     def velocities(self) -> Any:
-        """Velocities [m/s], shape (n, N, 2), or a list of arrays (N_i, 2)."""
+        """Velocities [m/s], float32, shape (n, N, 2), or a list of arrays (N_i, 2)."""
         return self.stack("velocities")
 
     @overload
@@ -125,5 +138,16 @@ class Batch(Sequence[Simulation]):
     def __iter__(self) -> Iterator[Simulation]:
         return iter(self._worlds)
 
+    def __getstate__(self) -> dict[str, Any]:
+        return {"worlds": self._worlds, "threads": self.threads}
+
+    def __setstate__(self, saved: dict[str, Any]) -> None:
+        self._worlds = saved["worlds"]
+        self._pool = _native.Pool(saved["threads"])
+
     def __repr__(self) -> str:
         return f"<unipbd.Batch of {len(self)} worlds, {int(self.counts.sum())} particles>"
+
+
+def _needs_python(world: Simulation) -> bool:
+    return bool(world._hooks or world._groups or world._recordings)

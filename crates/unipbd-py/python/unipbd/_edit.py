@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ._arrays import Doubles, Ids, numbers, pairs, points
+from ._arrays import Doubles, Ids, fixed, numbers, pairs, points
+from ._body_edit import BodyEdit
 from ._errors import EditError
 from ._phase import Phase
 from ._substep import id_list
@@ -17,11 +18,28 @@ if TYPE_CHECKING:
     from ._simulation import Simulation
 
 
+class _Reading(np.ndarray[Any, np.dtype[np.float64]]):
+    """What is read from a column: ``e.velocities[ids] *= 2`` changes it in place and sets it, but
+    ``e.velocities[ids][0] = v`` would be lost, so it is refused."""
+
+    column = ""
+
+    def __array_finalize__(self, source: Any) -> None:
+        if self.base is not None and self.base is source:
+            self.column = getattr(source, "column", "")
+
+    def __setitem__(self, key: Any, value: Any) -> None:
+        if self.column:
+            raise ValueError(f"this is a copy, a change of it is lost: set e.{self.column}[ids] as a whole")
+        super().__setitem__(key, value)
+
+
 class Column:
     """A column of particles to be changed, by id.
 
     The key is an array of ids, one id, a boolean mask over all particles in ascending order of
-    ids, or ``:`` for all but the samples of rigid bodies. Reading gives a copy; ``e.velocities[ids] *= 0.5`` works.
+    ids, or ``:`` for all but the samples of rigid bodies. Reading gives a copy that refuses writes;
+    ``e.velocities[ids] *= 0.5`` works.
     """
 
     __slots__ = ("_changed", "_edit", "_name", "_values")
@@ -33,7 +51,8 @@ class Column:
         self._changed = np.zeros(len(values), dtype=bool)
 
     def __getitem__(self, key: Any) -> Doubles:
-        values: Doubles = self._values[self._edit._rows(key)]
+        values = self._values[self._edit._rows(key)].view(_Reading)
+        values.column = self._name
         return values[0] if _is_one(key) else values
 
     def __setitem__(self, key: Any, value: npt.ArrayLike) -> None:
@@ -60,36 +79,6 @@ class Column:
         return f"<{self._name} of {len(self)} particles, {int(self._changed.sum())} changed>"
 
 
-class BodyEdit:
-    """A dynamic rigid body whose velocity is to be changed. See `Edit.bodies`."""
-
-    def __init__(self, name: str, velocity: Doubles, angular_velocity: float) -> None:
-        self._name = name
-        self._velocity = velocity
-        self._angular_velocity = angular_velocity
-        self._changed = False
-
-    @property
-    def velocity(self) -> Doubles:
-        """Velocity of the centre of mass [m/s], shape (2,), to be set."""
-        return self._velocity
-
-    @velocity.setter
-    def velocity(self, value: npt.ArrayLike) -> None:
-        self._velocity = pairs(value, 1, f"velocity of {self._name!r}", EditError)[0]
-        self._changed = True
-
-    @property
-    def angular_velocity(self) -> float:
-        """Angular velocity, counter-clockwise [rad/s], to be set."""
-        return self._angular_velocity
-
-    @angular_velocity.setter
-    def angular_velocity(self, value: float) -> None:
-        self._angular_velocity = float(value)
-        self._changed = True
-
-
 class Edit:
     """Changes of particles, made together when the `with` block ends. See `Simulation.edit`.
 
@@ -103,6 +92,7 @@ class Edit:
         self._open = False
 
     def __enter__(self) -> Edit:
+        """Notes the state as it is; the changes are made at the end of the block."""
         simulation = self._simulation
         self._ids: Ids = simulation.ids
         self._moment = (simulation.substeps, len(self._ids))
@@ -136,7 +126,7 @@ class Edit:
 
     @property
     def ids(self) -> Ids:
-        """Ids before the edit, in ascending order, shape (N,)."""
+        """Ids before the edit, in ascending order, uint32, shape (N,)."""
         return self._ids
 
     def remove(self, which: Any) -> None:
@@ -230,7 +220,7 @@ class Edit:
             if body._changed
         ]
         first, last = native.apply(self._changes(), sorted(self._removed), self._added, bodies)
-        self.added = np.arange(first, last, dtype=np.uint32)
+        self.added = fixed(np.arange(first, last, dtype=np.uint32))
 
 
 def _is_one(key: Any) -> bool:

@@ -16,7 +16,7 @@ class UnipbdError(Exception):
         self._fields = fields
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _rebuild, (type(self), self.message, self._fields)
+        return _rebuild, (type(self), self.message, {name: getattr(self, name) for name in self._fields})
 
 
 def _rebuild(kind: type[UnipbdError], message: str, fields: Mapping[str, Any]) -> UnipbdError:
@@ -25,18 +25,21 @@ def _rebuild(kind: type[UnipbdError], message: str, fields: Mapping[str, Any]) -
 
 @dataclass(frozen=True)
 class SceneProblem:
-    """One thing that is wrong with a scene."""
+    """One thing that is wrong with a scene.
+
+    Attributes:
+        key: where it is, such as ``emitter[0].position``.
+        message: what is wrong, with the offending value.
+        hint: what to do about it.
+        line: line in the file, from 1; None for a scene that has no file.
+        column: column in the line, from 1.
+    """
 
     key: str
-    """Where it is, such as ``emitter[0].position``."""
     message: str
-    """What is wrong, with the offending value."""
     hint: str | None = None
-    """What to do about it."""
     line: int | None = None
-    """Line in the file, from 1; None for a scene that has no file."""
     column: int | None = None
-    """Column in the line, from 1."""
 
     def __str__(self) -> str:
         where = f"{self.key}: " if self.key else ""
@@ -46,15 +49,19 @@ class SceneProblem:
 class SceneError(UnipbdError, ValueError):
     """A scene that cannot be built. All its problems are named at once.
 
-    `path`, `line`, `column`, `key` and `hint` are those of the first of `problems`.
+    Attributes:
+        problems: all that is wrong, each a `SceneProblem`.
+        path: the file; None for a scene that has no file.
+        line, column, key, hint: those of the first problem.
     """
 
     def __init__(
-        self, message: str = "", path: str | None = None, problems: Sequence[Mapping[str, Any]] = ()
+        self, message: str = "", path: str | None = None, problems: Sequence[Mapping[str, Any] | SceneProblem] = ()
     ) -> None:
         super().__init__(message, path=path, problems=problems)
         self.path = path
-        self.problems: tuple[SceneProblem, ...] = tuple(SceneProblem(**problem) for problem in problems)
+        made = (problem if isinstance(problem, SceneProblem) else SceneProblem(**problem) for problem in problems)
+        self.problems: tuple[SceneProblem, ...] = tuple(made)
         first = self.problems[0] if self.problems else SceneProblem("", message)
         self.line = first.line
         self.column = first.column
@@ -63,7 +70,16 @@ class SceneError(UnipbdError, ValueError):
 
 
 class SolverError(UnipbdError, ArithmeticError):
-    """The simulation diverged. The state is that of the failing substep."""
+    """The simulation diverged. The state is that of the failing substep.
+
+    Attributes:
+        stage: stage after which it was noticed.
+        step: substep since the start.
+        time: simulated time [s].
+        particle: id of the particle.
+        material: name of its material.
+        world: index of the world, in a batch.
+    """
 
     def __init__(
         self,
@@ -79,17 +95,11 @@ class SolverError(UnipbdError, ArithmeticError):
             message, stage=stage, step=step, time=time, particle=particle, material=material, world=world
         )
         self.stage = stage
-        """Stage after which it was noticed."""
         self.step = step
-        """Substep since the start."""
         self.time = time
-        """Simulated time [s]."""
         self.particle = particle
-        """Id of the particle."""
         self.material = material
-        """Name of its material."""
         self.world = world
-        """Index of the world, in a batch."""
 
 
 class StateError(UnipbdError, ValueError):

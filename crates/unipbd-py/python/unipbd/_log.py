@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from ._arrays import Floats, Ids
+from ._arrays import Floats, Ids, fixed
 from ._phase import Phase
 from ._scene import Scene
 
@@ -21,30 +21,35 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class LogFrame:
-    """One frame of a log. Arrays have one row per particle in ascending order of ids."""
+    """One frame of a log. Arrays are read-only, with one row per particle in ascending order of ids.
+
+    Attributes:
+        time: simulated time [s].
+        positions: positions [m], float32, shape (N, 2).
+        ids: ids, uint32, shape (N,).
+        phases: phases, uint8, shape (N,).
+        material_indices: indices into `Log.materials`, uint16, shape (N,).
+        velocities: velocities [m/s], float32, shape (N, 2), where they were recorded.
+        density_errors: density errors C = rho/rho0 - 1, as fractions, float32, shape (N,), where
+            they were recorded.
+        temperatures: temperatures, float32, shape (N,), where they were recorded.
+        bodies: rigid bodies by name, each a dict with the keys of `Body`: position, angle,
+            velocity, fluid_force and so on.
+        diagnostics: the state in numbers, as `Simulation.diagnostics`, with the ``state_hash``.
+        events: what happened since the frame before, as (time [s], severity, message).
+    """
 
     time: float
-    """Simulated time [s]."""
     positions: Floats = field(repr=False)
-    """Positions [m], float32, shape (N, 2)."""
     ids: Ids = field(repr=False)
-    """Ids, uint32, shape (N,)."""
     phases: npt.NDArray[np.uint8] = field(repr=False)
-    """Phases, uint8, shape (N,)."""
     material_indices: npt.NDArray[np.uint16] = field(repr=False)
-    """Indices into `Log.materials`, uint16, shape (N,)."""
     velocities: Floats | None = field(repr=False)
-    """Velocities [m/s], shape (N, 2), where they were recorded."""
     density_errors: Floats | None = field(repr=False)
-    """Density errors C, as fractions, shape (N,), where they were recorded."""
     temperatures: Floats | None = field(repr=False)
-    """Temperatures, shape (N,), where they were recorded."""
     bodies: Mapping[str, Mapping[str, Any]] = field(repr=False)
-    """Rigid bodies by name: position, angle, velocity, fluid_force and so on."""
     diagnostics: Mapping[str, Any] | None = field(repr=False)
-    """The state in numbers, as `Simulation.diagnostics`, with the ``state_hash``."""
     events: list[tuple[float, str, str]] = field(repr=False)
-    """What happened since the frame before: (time, severity, message)."""
 
     def to_dict(self) -> dict[str, Any]:
         """The columns of the particles by name, two for vectors: for tables and data frames."""
@@ -71,7 +76,7 @@ class LogFrame:
         return pandas.DataFrame(self.to_dict()).set_index("id")
 
     def to_xarray_dict(self) -> dict[str, Any]:
-        """What `xarray.Dataset.from_dict` takes."""
+        """What `xarray.Dataset.from_dict` takes: the columns over the ids."""
         columns = self.to_dict()
         return {
             "coords": {"id": {"dims": "id", "data": columns.pop("id")}},
@@ -82,30 +87,33 @@ class LogFrame:
 
 
 class Log:
-    """A recorded run: iterate over it for its frames, as often as you like. See `read_log`."""
+    """A recorded run: iterate over it for its frames, as often as you like. See `read_log`.
+
+    Attributes:
+        path: where the log is.
+        name: title of the scene.
+        seed: seed of the run.
+        fps: frames per simulated second [1/s].
+        spacing: rest distance of particles [m].
+        version: version of unipbd that wrote it.
+        scene_text: the scene file of the run.
+        overrides: changes to the scene from the command line, ``key=value``.
+        materials: names of the materials, by index.
+        phases: phases of the materials, by index.
+    """
 
     def __init__(self, path: str | os.PathLike[str]) -> None:
         self.path = os.fspath(path)
-        """Where the log is."""
         header = _native.LogReader(self.path).header()
         self.name: str = header["name"]
-        """Title of the scene."""
         self.seed: int = header["seed"]
-        """Seed of the run."""
         self.fps: float = header["fps"]
-        """Frames per simulated second [1/s]."""
         self.spacing: float = header["spacing"]
-        """Rest distance of particles [m]."""
         self.version: str = header["version"]
-        """Version of unipbd that wrote it."""
         self.scene_text: str = header["scene"]
-        """The scene file of the run."""
         self.overrides: list[str] = header["overrides"]
-        """Changes to the scene from the command line, ``key=value``."""
         self.materials: list[str] = [material["name"] for material in header["materials"]]
-        """Names of the materials, by index."""
         self.phases: list[Phase] = [Phase(material["phase"]) for material in header["materials"]]
-        """Phases of the materials, by index."""
         self._fields: list[str] = header["fields"].split(",")
         self._frames: int | None = header["frames"]
         self._truncated = self._frames is None
@@ -132,7 +140,7 @@ class Log:
         """Recorded columns of a frame without particles: empty, not missing."""
         shapes = {"velocity": ("velocities", (0, 2)), "density": ("density_errors", (0,))}
         known = [shapes[word] for word in self._fields if word in shapes]
-        return {name: np.empty(shape, dtype=np.float32) for name, shape in known}
+        return {name: fixed(np.empty(shape, dtype=np.float32)) for name, shape in known}
 
     def __len__(self) -> int:
         if self._frames is None:
@@ -143,7 +151,7 @@ class Log:
         """The numbers of all frames as arrays by name, shape (frames,): for plots and tables."""
         rows = [frame.diagnostics for frame in self if frame.diagnostics is not None]
         names = [name for name, value in rows[0].items() if isinstance(value, (int, float))] if rows else []
-        return {name: np.array([row[name] for row in rows]) for name in names}
+        return {name: fixed(np.array([row[name] for row in rows])) for name in names}
 
     def to_pandas(self) -> pandas.DataFrame:
         """The numbers of all frames as a data frame indexed by time (needs pandas)."""

@@ -3,181 +3,21 @@
 from __future__ import annotations
 
 import copy
-import difflib
-import json
 import os
-from collections.abc import Iterator, Mapping, MutableMapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
-import numpy.typing as npt
-
 from . import _native
-from ._arrays import pairs, plain, points
+from ._arrays import plain
+from ._builder import Builder
+from ._errors import SceneError
+from ._keys import Keys
+from ._tables import Table, Tables, resolve, schema
 
 if TYPE_CHECKING:
     from ._simulation import Simulation
 
 MATERIALS = ("liquid", "gas", "smoke", "solid")
-
-
-_known_schema: dict[str, Any] = {}
-
-
-def _schema() -> dict[str, Any]:
-    """The JSON schema of a scene, read when first asked for."""
-    if not _known_schema:
-        _known_schema.update(json.loads(_native.scene_schema()))
-    return _known_schema
-
-
-def _resolve(node: Mapping[str, Any]) -> Mapping[str, Any]:
-    """The part of the schema that a reference, or a choice with one table in it, stands for."""
-    if "$ref" in node:
-        return _resolve(_schema()["$defs"][node["$ref"].rsplit("/", 1)[1]])
-    for choice in node.get("anyOf", node.get("oneOf", node.get("allOf", ()))):
-        found = _resolve(choice)
-        if "properties" in found:
-            return found
-    return node
-
-
-class Table(MutableMapping[str, Any]):
-    """A table of a scene description, such as a material or the solver settings.
-
-    Keys are attributes: ``scene.solver.substeps = 8``. They are those of a scene file; `dir` lists
-    them, `describe` says what they mean. A key that is not set reads as None, and setting one to
-    None leaves it out. Values are checked when the scene is built.
-    """
-
-    __slots__ = ("_data", "_node")
-
-    def __init__(self, data: dict[str, Any], node: Mapping[str, Any]) -> None:
-        object.__setattr__(self, "_data", data)
-        object.__setattr__(self, "_node", _resolve(node))
-
-    def _properties(self) -> Mapping[str, Any]:
-        properties: Mapping[str, Any] = self._node.get("properties", {})
-        return properties
-
-    def _known(self, key: str) -> Mapping[str, Any]:
-        properties = self._properties()
-        if key not in properties:
-            near = difflib.get_close_matches(key, properties, 1)
-            hint = f"; did you mean {near[0]!r}?" if near else f"; the keys are {', '.join(properties)}"
-            raise AttributeError(f"a scene has no key {key!r} here{hint}")
-        node: Mapping[str, Any] = properties[key]
-        return node
-
-    def __getattr__(self, key: str) -> Any:
-        if key.startswith("_"):
-            raise AttributeError(key)
-        node = self._known(key)
-        return _wrap(self._data.get(key), node)
-
-    def __setattr__(self, key: str, value: Any) -> None:
-        self._known(key)
-        if value is None:
-            self._data.pop(key, None)
-        else:
-            self._data[key] = _unwrap(value)
-
-    def __delattr__(self, key: str) -> None:
-        self._known(key)
-        self._data.pop(key, None)
-
-    def __getitem__(self, key: str) -> Any:
-        if key not in self._data:
-            raise KeyError(key)
-        return getattr(self, key)
-
-    def __setitem__(self, key: str, value: Any) -> None:
-        try:
-            setattr(self, key, value)
-        except AttributeError as error:
-            raise KeyError(str(error)) from None
-
-    def __delitem__(self, key: str) -> None:
-        del self._data[key]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._data)
-
-    def __len__(self) -> int:
-        return len(self._data)
-
-    def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *self._properties()]
-
-    def describe(self) -> str:
-        """What each key means, one per line."""
-        lines = (f"{key}: {node.get('description', '')}" for key, node in self._properties().items())
-        return "\n".join(lines)
-
-    def to_dict(self) -> dict[str, Any]:
-        """A copy as a plain dict."""
-        return copy.deepcopy(self._data)
-
-    def __repr__(self) -> str:
-        entries = ", ".join(f"{key}={_short(value)}" for key, value in self._data.items())
-        return f"{self._node.get('title', 'Table')}({entries})"
-
-
-class Tables(Sequence[Table]):
-    """The tables of one kind, such as all blocks: a list that can grow and shrink."""
-
-    __slots__ = ("_list", "_node")
-
-    def __init__(self, entries: list[dict[str, Any]], node: Mapping[str, Any]) -> None:
-        self._list = entries
-        self._node = node
-
-    def __getitem__(self, index: Any) -> Any:
-        if isinstance(index, slice):
-            return [Table(entry, self._node) for entry in self._list[index]]
-        return Table(self._list[index], self._node)
-
-    def __len__(self) -> int:
-        return len(self._list)
-
-    def __delitem__(self, index: int | slice) -> None:
-        del self._list[index]
-
-    def append(self, **values: Any) -> Table:
-        """Adds a table with these values."""
-        table = Table({}, self._node)
-        for key, value in values.items():
-            setattr(table, key, value)
-        self._list.append(table._data)
-        return table
-
-    def clear(self) -> None:
-        """Removes all tables."""
-        self._list.clear()
-
-    def __repr__(self) -> str:
-        return "[" + ", ".join(map(repr, self)) + "]"
-
-
-def _wrap(value: Any, node: Mapping[str, Any]) -> Any:
-    if isinstance(value, dict):
-        return Table(value, node)
-    items = _resolve(node).get("items")
-    if isinstance(value, list) and items and "properties" in _resolve(items):
-        return Tables(value, items)
-    return tuple(value) if isinstance(value, list) else value
-
-
-def _unwrap(value: Any) -> Any:
-    if isinstance(value, Table):
-        return value._data
-    if isinstance(value, Tables):
-        return value._list
-    return plain(value)
-
-
-def _short(value: Any) -> str:
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
 
 
 class _Named(Mapping[str, Table]):
@@ -210,7 +50,7 @@ class _Named(Mapping[str, Table]):
         return repr(dict(self._entries()))
 
 
-class Scene:
+class Scene(Keys, Builder):
     """A scene description: what to simulate, as plain data that can be edited.
 
     Read one with `load`, `from_toml` or `from_dict`, or make one with builder calls. Everything a
@@ -224,8 +64,8 @@ class Scene:
         scene.materials["water"].viscosity = 0.02
         sim = scene.build(seed=7)
 
-    `describe` lists all keys. Values are checked by `check` and `build`, which name all problems at
-    once in a `SceneError`.
+    `describe` lists all keys and says what they mean. Values are checked by `check` and `build`,
+    which name all problems at once in a `SceneError`.
     """
 
     _data: dict[str, Any]
@@ -261,10 +101,10 @@ class Scene:
     # -- attributes ----------------------------------------------------------------------------
 
     def _root(self) -> Table:
-        return Table(self._data, _schema())
+        return Table(self._data, schema())
 
     def _tables(self, kind: str) -> Tables:
-        node = _resolve(self._root()._known(kind)).get("items", {})
+        node = resolve(self._root()._known(kind)).get("items", {})
         entries: list[dict[str, Any]] = self._data.setdefault(kind, [])
         return Tables(entries, node)
 
@@ -272,9 +112,9 @@ class Scene:
         if key.startswith("_"):
             raise AttributeError(key)
         root = self._root()
-        if _resolve(root._known(key)).get("type") == "array" and key not in self._data:
-            items = _resolve(root._known(key)).get("items")
-            if items and "properties" in _resolve(items):
+        if resolve(root._known(key)).get("type") == "array" and key not in self._data:
+            items = resolve(root._known(key)).get("items")
+            if items and "properties" in resolve(items):
                 return self._tables(key)
         return getattr(root, key)
 
@@ -282,7 +122,7 @@ class Scene:
         setattr(self._root(), key, value)
 
     def __dir__(self) -> list[str]:
-        return [*super().__dir__(), *_schema()["properties"]]
+        return [*super().__dir__(), *schema()["properties"]]
 
     @property
     def materials(self) -> Mapping[str, Table]:
@@ -299,113 +139,16 @@ class Scene:
         """Rigid bodies by name."""
         return _Named(self, ("body",), "body")
 
-    def describe(self) -> str:
-        """What each key of a scene means, one per line."""
-        return self._root().describe()
+    def describe(self, table: str = "") -> str:
+        """What each key of a scene means, one per line; or each key of one of its tables::
 
-    # -- builder calls -------------------------------------------------------------------------
-
-    def add(self, table: str, /, **values: Any) -> Table:
-        """Adds a table of any kind, such as ``scene.add("tank", min=(0, 0), max=(1, 1))``."""
-        return self._tables(table).append(**values)
-
-    def add_liquid(self, name: str, density: float = 1000.0, **values: Any) -> Table:
-        """Adds a liquid of this rest density [kg/m^2]."""
-        return self.add("liquid", name=name, density=density, **values)
-
-    def add_gas(self, name: str, density: float = 1.2, **values: Any) -> Table:
-        """Adds a gas of this rest density [kg/m^2]."""
-        return self.add("gas", name=name, density=density, **values)
-
-    def add_smoke(self, name: str, **values: Any) -> Table:
-        """Adds a smoke: markers that follow the flow."""
-        return self.add("smoke", name=name, **values)
-
-    def add_solid(self, name: str, density: float = 1000.0, **values: Any) -> Table:
-        """Adds a solid: free points for constraints of your own."""
-        return self.add("solid", name=name, density=density, **values)
-
-    def add_block(
-        self, material: str, min: tuple[float, float], max: tuple[float, float], **values: Any
-    ) -> Table:
-        """Fills a rectangle [m] with particles of a material."""
-        return self.add("block", material=material, min=min, max=max, **values)
-
-    def add_disc(self, material: str, center: tuple[float, float], radius: float, **values: Any) -> Table:
-        """Fills a disc [m] with particles of a material."""
-        return self.add("disc", material=material, center=center, radius=radius, **values)
-
-    def add_particles(
-        self,
-        material: str,
-        positions: npt.ArrayLike,
-        velocities: npt.ArrayLike | None = None,
-        **values: Any,
-    ) -> Table:
-        """Adds particles at `positions`, shape (N, 2) [m].
-
-        `velocities` [m/s] is one vector for all of them or an array of shape (N, 2).
-        ``motion="scripted"`` lets only their velocity move them.
+            print(scene.describe())
+            print(scene.describe("body"))
         """
-        where = points(positions, "positions", ValueError)
-        if velocities is not None:
-            values["velocities"] = pairs(velocities, len(where), "velocities", ValueError)
-        return self.add("points", material=material, positions=where, **values)
-
-    def add_emitter(
-        self,
-        material: str,
-        position: tuple[float, float],
-        width: float,
-        speed: float,
-        direction: tuple[float, float] = (0.0, 1.0),
-        **values: Any,
-    ) -> Table:
-        """Adds a nozzle of this width [m] that pushes a material out at this speed [m/s]."""
-        return self.add(
-            "emitter", material=material, position=position, width=width, speed=speed, direction=direction, **values
-        )
-
-    def add_tank(self, min: tuple[float, float], max: tuple[float, float], **values: Any) -> Table:
-        """Adds a container: particles stay inside the rectangle [m]."""
-        return self.add("tank", min=min, max=max, **values)
-
-    def add_obstacle(self, min: tuple[float, float], max: tuple[float, float], **values: Any) -> Table:
-        """Adds a static box: particles stay outside the rectangle [m]."""
-        return self.add("obstacle", min=min, max=max, **values)
-
-    def add_half_plane(self, point: tuple[float, float], normal: tuple[float, float], **values: Any) -> Table:
-        """Adds a straight wall without end; particles stay on the side the normal points to."""
-        return self.add("half_plane", point=point, normal=normal, **values)
-
-    def add_body(
-        self,
-        name: str,
-        at: tuple[float, float],
-        outline: npt.ArrayLike | None = None,
-        size: tuple[float, float] | None = None,
-        radius: float | None = None,
-        density: float = 1000.0,
-        **values: Any,
-    ) -> Table:
-        """Adds a rigid body at `at` [m]: a polygon (`outline`, shape (M, 2), seen from `at`), a box
-        (`size`: width and height) or a disc (`radius`), of this mass per area [kg/m^2].
-
-        Further keys are those of ``[[body]]`` in a scene file, such as ``angle_deg``, ``velocity``,
-        ``friction`` and ``kind="kinematic"``.
-        """
-        if outline is not None:
-            values["outline"] = points(outline, "outline", ValueError)
-        shape = {"size": size, "radius": radius}
-        values |= {key: value for key, value in shape.items() if value is not None}
-        return self.add("body", name=name, position=at, density=density, **values)
-
-    def add_joint(self, kind: str, body: str, at: tuple[float, float], **values: Any) -> Table:
-        """Links two bodies, or a body and the world, at a point [m].
-
-        `kind` is ``"hinge"``, ``"rod"`` or ``"rope"``; ``other`` names the second body.
-        """
-        return self.add("joint", kind=kind, body=body, at=at, **values)
+        if not table:
+            return self._root().describe()
+        node = resolve(self._root()._known(table))
+        return Table({}, node.get("items", node)).describe()
 
     # -- use -----------------------------------------------------------------------------------
 
@@ -459,7 +202,13 @@ class Scene:
         object.__setattr__(self, "_data", data)
 
     def __eq__(self, other: object) -> bool:
-        return isinstance(other, Scene) and self.to_dict() == other.to_dict()
+        """Whether both describe the same: a default that is written out makes no difference."""
+        if not isinstance(other, Scene):
+            return NotImplemented
+        try:
+            return self.to_toml() == other.to_toml()
+        except (SceneError, TypeError, ValueError):
+            return self.to_dict() == other.to_dict()
 
     __hash__ = None  # type: ignore[assignment]
 

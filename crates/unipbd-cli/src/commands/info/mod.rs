@@ -3,6 +3,8 @@
 mod log;
 mod scene;
 
+pub(super) use scene::bodies;
+
 use crate::args::{InfoArgs, is_log};
 use crate::exit::{Exit, Failure};
 use crate::report::Console;

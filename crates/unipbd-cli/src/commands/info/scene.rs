@@ -4,6 +4,7 @@ use std::path::Path;
 
 use serde_json::json;
 use unipbd_core::BuildOptions;
+use unipbd_core::bodies::{Body, BodyKind};
 use unipbd_core::observe::Diagnostics;
 use unipbd_core::scene::Scene;
 
@@ -43,6 +44,9 @@ fn text(loaded: &LoadedScene, simulation: &Simulation) -> String {
         .push(format!("  spacing     {} m, gravity [{}, {}] m/s^2", scene.spacing, scene.gravity[0], scene.gravity[1]));
     lines.push(format!("  particles   {}", particles(scene, &diagnostics)));
     lines.extend(materials(simulation, &diagnostics));
+    if let Some(bodies) = bodies(simulation, scene) {
+        lines.push(format!("  bodies      {bodies}"));
+    }
     lines.push(format!("  walls       {}", walls(scene)));
     if let Some(axes) = periodic_axes(scene) {
         lines.push(format!("  periodic    {axes}"));
@@ -75,6 +79,21 @@ fn materials(simulation: &Simulation, diagnostics: &Diagnostics) -> Vec<String> 
         )
     });
     lines.collect()
+}
+
+/// Bodies and joints, where there are bodies.
+pub(in crate::commands) fn bodies(simulation: &Simulation, scene: &Scene) -> Option<String> {
+    let kind = |body: &&Body| body.kind != BodyKind::Dynamic;
+    let all = simulation.solver.bodies();
+    let mut text = count(all.len() as u64);
+    match all.iter().filter(kind).count() {
+        0 => (),
+        number => text += &format!(" ({number} kinematic or static)"),
+    }
+    if !scene.joint.is_empty() {
+        text += &format!(", {}", plural(scene.joint.len() as u64, "joint"));
+    }
+    (!all.is_empty()).then_some(text)
 }
 
 fn walls(scene: &Scene) -> String {
@@ -127,6 +146,8 @@ fn object(loaded: &LoadedScene, simulation: &Simulation) -> serde_json::Value {
         "particles": particle_object(scene),
         "materials": materials,
         "emitters": scene.emitter.len(),
+        "bodies": simulation.solver.bodies().len(),
+        "joints": scene.joint.len(),
         "walls": {
             "half_plane": scene.half_plane.len(),
             "tank": scene.tank.len(),

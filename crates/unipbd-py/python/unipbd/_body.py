@@ -1,0 +1,112 @@
+"""Rigid bodies of a running simulation."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+from ._arrays import Doubles
+
+if TYPE_CHECKING:
+    from ._observe import Observable
+
+
+class Body:
+    """A rigid body, as it is at each access. See `Simulation.bodies`.
+
+    To push one between two frames, or to drive a kinematic one, use `Edit.bodies`; within the
+    substeps of a frame `Substep.bodies`.
+    """
+
+    def __init__(self, simulation: Observable, index: int) -> None:
+        self._simulation = simulation
+        self._index = index
+
+    def _motion(self, key: str) -> Any:
+        return self._simulation._native.body_motion(self._index)[key]
+
+    def _shape(self, key: str) -> Any:
+        return self._simulation._native.body_shape(self._index)[key]
+
+    @property
+    def name(self) -> str:
+        """Name in the scene."""
+        return cast(str, self._shape("name"))
+
+    @property
+    def kind(self) -> str:
+        """``"dynamic"``, ``"kinematic"`` or ``"static"``."""
+        return cast(str, self._shape("kind"))
+
+    @property
+    def mass(self) -> float:
+        """Mass [kg]."""
+        return float(self._shape("mass"))
+
+    @property
+    def inertia(self) -> float:
+        """Moment of inertia about the centre of mass [kg m^2]."""
+        return float(self._shape("inertia"))
+
+    @property
+    def outline(self) -> Doubles:
+        """Corners in body coordinates, counter-clockwise [m], float64, shape (M, 2); empty for a disc."""
+        return cast(Doubles, self._shape("outline"))
+
+    @property
+    def radius(self) -> float:
+        """Radius of a disc [m], 0 for a polygon."""
+        return float(self._shape("radius"))
+
+    @property
+    def samples(self) -> Doubles:
+        """Lattice samples in body coordinates, through which the fluid feels it [m], float64, shape (M, 2)."""
+        return cast(Doubles, self._shape("samples"))
+
+    @property
+    def position(self) -> Doubles:
+        """Centre of mass [m], float64, shape (2,)."""
+        return cast(Doubles, self._motion("position"))
+
+    @property
+    def angle(self) -> float:
+        """Rotation, counter-clockwise [rad]."""
+        return float(self._motion("angle"))
+
+    @property
+    def velocity(self) -> Doubles:
+        """Velocity of the centre of mass [m/s], float64, shape (2,)."""
+        return cast(Doubles, self._motion("velocity"))
+
+    @property
+    def angular_velocity(self) -> float:
+        """Angular velocity, counter-clockwise [rad/s]."""
+        return float(self._motion("angular_velocity"))
+
+    @property
+    def fluid_force(self) -> Doubles:
+        """Mean force of the fluid over the last frame [N], float64, shape (2,)."""
+        return cast(Doubles, self._motion("fluid_force"))
+
+    @property
+    def fluid_torque(self) -> float:
+        """Mean torque of the fluid about the centre of mass over the last frame [N m]."""
+        return float(self._motion("fluid_torque"))
+
+    @property
+    def contact_force(self) -> Doubles:
+        """Mean force of contacts and joints over the last frame [N], float64, shape (2,)."""
+        return cast(Doubles, self._motion("contact_force"))
+
+    @property
+    def contact_torque(self) -> float:
+        """Mean torque of contacts and joints over the last frame [N m]."""
+        return float(self._motion("contact_torque"))
+
+    @property
+    def asleep(self) -> bool:
+        """Whether it is held still until something wakes it."""
+        return bool(self._motion("asleep"))
+
+    def __repr__(self) -> str:
+        x, y = self.position
+        return f"<{self.kind} body {self.name!r} at ({x:.3g}, {y:.3g}), angle {self.angle:.3g}>"

@@ -1,0 +1,50 @@
+//! A run and what Python has hung onto it.
+
+use std::path::Path;
+
+use pyo3::prelude::*;
+use unipbd_cli::simulation::Simulation;
+use unipbd_cli::snapshot::Setting;
+use unipbd_core::observe::{Event, Severity};
+use unipbd_core::scene::Scene;
+
+use crate::group::Failure;
+use crate::{errors, order};
+
+/// A run and what belongs to it.
+pub struct World {
+    pub running: Simulation,
+    pub scene: Scene,
+    /// Events that no log has yet.
+    pub unrecorded: Vec<Event>,
+    pub has_groups: bool,
+    pub failure: Failure,
+    /// Rows in the order of their ids, until they change.
+    pub order: Option<Vec<u32>>,
+}
+
+impl World {
+    /// What stays the same over the run.
+    pub fn setting(&self) -> Setting {
+        self.running.setting(&self.scene, Path::new("simulation"))
+    }
+
+    /// The scene as TOML text.
+    pub fn scene_text(&self, py: Python<'_>) -> PyResult<String> {
+        toml::to_string(&self.scene).map_err(|error| errors::other(py, &error.to_string()))
+    }
+
+    /// Rows in the order of their ids.
+    pub fn order(&mut self) -> &[u32] {
+        let ids = self.running.solver.ids();
+        self.order.get_or_insert_with(|| order::by_id(ids))
+    }
+}
+
+/// The word for how grave an event is.
+pub fn severity(severity: Severity) -> &'static str {
+    match severity {
+        Severity::Info => "info",
+        Severity::Warning => "warning",
+    }
+}
