@@ -4,6 +4,9 @@ use crate::kernel::Kernel;
 use crate::math::{Real, Vector, real};
 use crate::scene::{MaterialRef, Scene};
 
+/// Range of the cohesion [spacings]: a longer one pushes the next neighbours apart instead of pulling them.
+const RANGE: f64 = 2.5;
+
 /// Surface tension by cohesion and by smoothing of the surface (Akinci, Akinci & Teschner 2013,
 /// equations 1 to 5), between particles of one liquid:
 /// a_i = -strength sum_j K_ij (S(r) x_ij/r + n_i - n_j), n = h sum V grad W, K = 2 rho0/(rho_i + rho_j).
@@ -26,7 +29,7 @@ impl Cohesion {
         };
         let strength: Vec<Real> = scene.materials().map(of).collect();
         any(&strength).then(|| Cohesion {
-            kernel: Kernel::new(scene.solver.kernel_radius * scene.spacing),
+            kernel: Kernel::new(scene.solver.kernel_radius.min(RANGE) * scene.spacing),
             volume: real(scene.spacing * scene.spacing),
             strength,
             normal: Vec::new(),

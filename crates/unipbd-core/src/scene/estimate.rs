@@ -7,11 +7,6 @@ use super::{Emitter, Profile, Scene, Substeps};
 pub const BYTES_PER_PARTICLE: u64 = 300;
 /// Rough time per particle and substep on one core [s].
 pub const SECONDS_PER_PARTICLE_AND_SUBSTEP: f64 = 60e-9;
-/// Compression per p dt^2/(rho dx^2), times the relaxation: measured for the Wendland C2 kernel of
-/// radius 2.5 dx on columns 10 to 300 particles deep.
-const COMPRESSIBILITY: f64 = 0.335;
-/// Relaxation of liquids, omega.
-const RELAXATION: f64 = 0.5;
 /// Largest distance a particle may move in a substep, in spacings.
 const COURANT: f64 = 0.4;
 
@@ -165,7 +160,7 @@ fn automatic_substeps(scene: &Scene) -> u32 {
     let courant = frame * largest_speed(scene) / (COURANT * scene.spacing);
     let trust = 2.0 * frame * pressure.sqrt() / scene.spacing;
     let accuracy =
-        frame / scene.spacing * (COMPRESSIBILITY / RELAXATION * pressure / scene.solver.target_compression).sqrt();
+        frame / scene.spacing * (scene.solver.compressibility() * pressure / scene.solver.target_compression).sqrt();
     let count = courant.max(trust).max(accuracy).ceil().max(1.0);
     (count as u32).min(scene.solver.max_substeps)
 }

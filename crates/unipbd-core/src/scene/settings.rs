@@ -54,31 +54,55 @@ impl Default for SolverSettings {
     }
 }
 
-/// Relaxation by kernel radius in spacings: with a free surface, and in fluids that resist dilation too.
-/// One iteration per substep is linearly stable below 4/(3 lambda_max), lambda_max the largest eigenvalue of
-/// the iteration (2.9, 3.15 and 3.9 at 2, 2.5 and 3 spacings); a free surface bears a little more.
-const RELAXATION: [(f64, f64, f64); 4] = [(2.0, 0.5, 0.4), (2.5, 0.5, 0.4), (3.0, 0.36, 0.33), (4.0, 0.24, 0.22)];
+/// What depends on the kernel radius.
+struct ByRadius {
+    /// Kernel radius [spacings].
+    radius: f64,
+    /// Relaxation that is stable with a free surface...
+    free: f64,
+    /// ...and in fluids that resist dilation too. One iteration per substep is linearly stable below
+    /// 4/(3 lambda_max), lambda_max the largest eigenvalue of the iteration (2.9, 3.15 and 3.9 at 2, 2.5 and
+    /// 3 spacings); a free surface bears a little more.
+    filled: f64,
+    /// D of the law C_max = (D/omega) P dt^2/dx^2: measured for Wendland C2 at 2.5 spacings on columns 10 to
+    /// 300 particles deep; elsewhere it goes as the response of the rest lattice.
+    compressibility: f64,
+}
+
+#[rustfmt::skip]
+const BY_RADIUS: [ByRadius; 4] = [
+    ByRadius { radius: 2.0, free: 0.5, filled: 0.4, compressibility: 0.533 },
+    ByRadius { radius: 2.5, free: 0.5, filled: 0.4, compressibility: 0.335 },
+    ByRadius { radius: 3.0, free: 0.36, filled: 0.33, compressibility: 0.183 },
+    ByRadius { radius: 4.0, free: 0.24, filled: 0.22, compressibility: 0.062 },
+];
 
 impl SolverSettings {
     /// Relaxation omega of fluids with a free surface.
     pub fn relaxation_of_liquids(&self) -> f64 {
-        self.relaxation.unwrap_or_else(|| stable_relaxation(self.kernel_radius, |row| row.1))
+        self.relaxation.unwrap_or_else(|| self.by_radius(|row| row.free))
     }
 
     /// Relaxation omega of gas, and of liquids without a surface.
     pub fn relaxation_of_filled(&self) -> f64 {
-        self.relaxation.unwrap_or_else(|| stable_relaxation(self.kernel_radius, |row| row.2))
+        self.relaxation.unwrap_or_else(|| self.by_radius(|row| row.filled))
     }
-}
 
-/// Linear between the rows of the table, constant beyond its ends.
-fn stable_relaxation(radius: f64, column: impl Fn(&(f64, f64, f64)) -> f64) -> f64 {
-    let (first, last) = (&RELAXATION[0], &RELAXATION[RELAXATION.len() - 1]);
-    let radius = radius.clamp(first.0, last.0);
-    let upper = RELAXATION.iter().position(|row| radius <= row.0).unwrap_or(RELAXATION.len() - 1).max(1);
-    let (below, above) = (&RELAXATION[upper - 1], &RELAXATION[upper]);
-    let part = (radius - below.0) / (above.0 - below.0);
-    column(below) + part * (column(above) - column(below))
+    /// D/omega of the law C_max = (D/omega) P dt^2/dx^2, for all iterations of a substep.
+    pub fn compressibility(&self) -> f64 {
+        let iterations = f64::from(self.iterations.max(1));
+        self.by_radius(|row| row.compressibility) / (self.relaxation_of_liquids() * iterations)
+    }
+
+    /// Linear between the rows of the table, constant beyond its ends.
+    fn by_radius(&self, column: impl Fn(&ByRadius) -> f64) -> f64 {
+        let last = BY_RADIUS.len() - 1;
+        let radius = self.kernel_radius.clamp(BY_RADIUS[0].radius, BY_RADIUS[last].radius);
+        let upper = BY_RADIUS.iter().position(|row| radius <= row.radius).unwrap_or(last).max(1);
+        let (below, above) = (&BY_RADIUS[upper - 1], &BY_RADIUS[upper]);
+        let part = (radius - below.radius) / (above.radius - below.radius);
+        column(below) + part * (column(above) - column(below))
+    }
 }
 
 /// Substeps per frame.

@@ -1,14 +1,10 @@
 //! How many substeps a frame takes, and why.
 
-use crate::kernel::Kernel;
 use crate::observe::SubstepReason;
-use crate::scene::{KernelKind, Scene, Substeps};
+use crate::scene::{Scene, Substeps};
 
 /// Way per substep, in spacings, that the Courant-Friedrichs-Lewy condition allows.
 const COURANT: f64 = 0.4;
-/// Error constant D of C_max = (D/omega) P dt^2/dx^2, measured for Wendland C2 at h = 2.5 dx; for
-/// other kernels it follows the response of the rest lattice.
-const ERROR_CONSTANT: f64 = 0.335;
 /// Height of a stack of bodies that one substep per frame can carry.
 const BODIES_PER_SUBSTEP: f64 = 2.5;
 /// The number of substeps stays while at least this part of it is wanted, and falls no faster: each
@@ -33,7 +29,7 @@ pub struct SubstepRule {
     cap: u32,
     target: f64,
     spacing: f64,
-    /// D/(omega K).
+    /// D/omega of the law C_max = (D/omega) P dt^2/dx^2.
     error: f64,
 }
 
@@ -51,14 +47,12 @@ pub struct Choice {
 impl SubstepRule {
     /// The rule of a scene.
     pub fn new(scene: &Scene) -> Self {
-        let relaxation = scene.solver.relaxation_of_liquids();
-        let iterations = f64::from(scene.solver.iterations.max(1));
         SubstepRule {
             substeps: scene.solver.substeps,
             cap: scene.solver.max_substeps.max(1),
             target: scene.solver.target_compression,
             spacing: scene.spacing,
-            error: ERROR_CONSTANT * relative_response(scene) / (relaxation * iterations),
+            error: scene.solver.compressibility(),
         }
     }
 
@@ -99,17 +93,6 @@ impl SubstepRule {
     }
 }
 
-/// The denominator of the density iteration at rest, over that of Wendland C2 at h = 2.5 dx.
-fn relative_response(scene: &Scene) -> f64 {
-    let response = |kind: KernelKind, radius: f64| {
-        let kernel = Kernel::of(kind, radius);
-        let sums = kernel.lattice(1.0);
-        let volume = 1.0 / (sums.value + f64::from(kernel.value(0.0)));
-        volume * volume * sums.gradient_squared
-    };
-    response(scene.solver.kernel, scene.solver.kernel_radius) / response(KernelKind::WendlandC2, 2.5)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -122,7 +105,7 @@ mod tests {
     fn substeps_grow_with_the_square_root_of_the_depth() {
         let at =
             |depth: f64| rule().choose(1.0 / 60.0, Demand { pressure: 9.81 * depth, ..Demand::default() }).substeps;
-        assert_eq!(at(3.0), 8);
+        assert_eq!(at(3.0), 7);
         assert!((f64::from(at(120.0)) / f64::from(at(30.0)) - 2.0).abs() < 0.1);
     }
 
