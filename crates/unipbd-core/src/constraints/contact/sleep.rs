@@ -70,7 +70,7 @@ impl Islands {
         woken
     }
 
-    fn wake_island(&mut self, bodies: &mut Bodies, id: usize) {
+    pub fn wake_island(&mut self, bodies: &mut Bodies, id: usize) {
         let island = self.island[id];
         for other in 0..bodies.len() {
             if bodies.asleep[other] && self.island[other] == island {
@@ -93,6 +93,20 @@ impl Islands {
         if !self.rest.iter().zip(&bodies.asleep).any(|(&rest, &asleep)| rest >= settings.delay && !asleep) {
             return false;
         }
+        self.unite_touching(bodies, contacts, joints);
+        self.put_to_rest(bodies, settings)
+    }
+
+    /// Puts bodies to sleep at once: the fluid that carries them does.
+    pub fn lay_down(&mut self, bodies: &mut Bodies, tired: &[u32], contacts: &[Contact], joints: &[Linked]) {
+        self.unite_touching(bodies, contacts, joints);
+        for &body in tired {
+            bodies.fall_asleep(body as usize);
+            self.island[body as usize] = self.root(body);
+        }
+    }
+
+    fn unite_touching(&mut self, bodies: &Bodies, contacts: &[Contact], joints: &[Linked]) {
         self.parents.clear();
         self.parents.extend(0..bodies.len() as u32);
         let touching =
@@ -100,7 +114,6 @@ impl Islands {
         for (a, b) in touching.chain(joints.iter().map(Linked::bodies)).filter(|&(_, b)| b != NONE) {
             self.unite(bodies, a, b);
         }
-        self.put_to_rest(bodies, settings)
     }
 
     fn measure_rest(&mut self, bodies: &Bodies, settings: &SleepSettings, frame_time: f64) {
