@@ -3,6 +3,7 @@
 #![allow(unsafe_code)]
 
 use crate::Lattice;
+use crate::whole::{ScalarStep, Step};
 use std::hint::black_box;
 use std::ops::Deref;
 use std::time::Instant;
@@ -187,7 +188,12 @@ pub fn report(rows: usize, levels: &[Level]) -> String {
     let mut order_grid = Grid::new(Periodic::NONE);
     let (mut build, mut build_pool) = (NeighborList::default(), NeighborList::default());
     let mut pool_grid = Grid::new(Periodic::NONE);
+    let (mut whole, mut whole_pool) = (Step::new(rows, RADIUS), Step::new(rows, RADIUS));
+    let mut whole_scalar = ScalarStep::new(rows, RADIUS);
     let mut entries = vec![
+        timed("whole step   scalar CSR", || whole_scalar.run(&case.x, &case.v)),
+        timed("whole step", || whole.ours(&case.x, &case.v, Serial)),
+        timed("whole step   2 threads", || whole_pool.ours(&case.x, &case.v, Pool)),
         timed("roofline sqrt+div", || {
             black_box(roofline(slots));
         }),

@@ -5,7 +5,7 @@
 use std::process::Command;
 
 use unipbd_benches::steps::{self, Measured};
-use unipbd_benches::{on_two_threads, roofline};
+use unipbd_benches::{on_two_threads, roofline, sleep};
 use unipbd_core::simd::Level;
 
 fn main() {
@@ -25,6 +25,20 @@ fn main() {
         println!("{}\n", growth_line(small, large));
     }
     println!("{}", stage_table(&measured));
+    println!("## Sleep\n\n{}", sleep_line());
+    println!("\n## Peers\n\nSee [peers.md](peers.md), written by `benches/peers.sh`.");
+}
+
+fn sleep_line() -> String {
+    const PARTICLES: usize = 20_000;
+    match sleep::measure(PARTICLES, 3000) {
+        Some([awake, asleep]) => format!(
+            "A pool of {PARTICLES} particles at rest, 16 substeps a frame: {awake:.2} ms per frame awake, {asleep:.3} ms \
+             asleep, {:.2} %.",
+            100.0 * asleep / awake
+        ),
+        None => "The pool did not come to rest.".to_owned(),
+    }
 }
 
 const INTRODUCTION: &str = "\
@@ -38,7 +52,8 @@ all of it: trust the ratios, not the nanoseconds.
 const PASSES: &str = "\
 A lattice with random shifts, h = 2 dx. \"Scalar\" is a plain loop over vectors and a compressed list of
 the same pairs; the roofline is a loop of nothing but one exact square root and one quotient per slot of
-the list, eight at a time. Results have the same bits on every instruction set and number of threads.";
+the list, eight at a time. A whole step is the sort, the list, four iterations of density and correction,
+and viscosity. Results have the same bits on every instruction set and number of threads.";
 
 const STEPS: &str = "\
 A dam break with viscosity, h = 2.5 dx, one iteration a substep, list builds included; nanoseconds per

@@ -79,8 +79,8 @@ impl LiquidSleep {
         self.known = false;
     }
 
-    /// Ends a frame: decides who wakes and who falls asleep. `may` says whether a sample of a body may.
-    pub fn decide(&mut self, particles: &mut Particles, may: impl Fn(usize) -> bool) {
+    /// Ends a frame: decides who wakes and who falls asleep. `may` says whether the sample of this id may.
+    pub fn decide(&mut self, particles: &mut Particles, may: impl Fn(u32) -> bool) {
         self.know(particles);
         self.measure(particles, may);
         self.note_rest(particles);
@@ -132,7 +132,7 @@ impl LiquidSleep {
     }
 
     /// How the rows that are awake have moved, block by block.
-    fn measure(&mut self, particles: &Particles, may: impl Fn(usize) -> bool) {
+    fn measure(&mut self, particles: &Particles, may: impl Fn(u32) -> bool) {
         self.blocks.clear();
         for row in 0..particles.awake() {
             let position = particles.position[row];
@@ -145,7 +145,7 @@ impl LiquidSleep {
             block.speed = block.speed.max(particles.velocity[row].length());
             block.sleepy &= match particles.phase[row] {
                 Phase::Liquid => particles.inverse_mass[row] > 0.0,
-                phase => phase == Phase::Rigid && may(row),
+                phase => phase == Phase::Rigid && may(particles.id[row]),
             };
         }
         for (_, block) in self.blocks.all_mut() {

@@ -18,8 +18,7 @@ impl World {
     pub(super) fn decide_sleep(&mut self) {
         self.rearrange(|sleep, parts| {
             let rigid = parts.rigid.as_ref();
-            let ids: &[u32] = if rigid.is_some() { &parts.particles.id.clone() } else { &[] };
-            sleep.decide(&mut parts.particles, |row| rigid.is_some_and(|rigid| rigid.may_rest(ids[row])));
+            sleep.decide(&mut parts.particles, |id| rigid.is_some_and(|rigid| rigid.may_rest(id)));
         });
     }
 

@@ -29,6 +29,9 @@ pub(super) struct Islands {
     /// The island each sleeping body belongs to.
     island: Vec<u32>,
     parents: Vec<u32>,
+    /// The shortest rest time of each island, at its root.
+    #[serde(skip)]
+    least: Vec<f64>,
 }
 
 impl Islands {
@@ -149,14 +152,16 @@ impl Islands {
     }
 
     fn put_to_rest(&mut self, bodies: &mut Bodies, settings: &SleepSettings) -> bool {
-        let roots: Vec<u32> = (0..bodies.len() as u32).map(|id| self.root(id)).collect();
-        let mut least = vec![f64::INFINITY; bodies.len()];
-        for (id, &root) in roots.iter().enumerate() {
-            least[root as usize] = least[root as usize].min(self.rest[id]);
+        self.least.clear();
+        self.least.resize(bodies.len(), f64::INFINITY);
+        for id in 0..bodies.len() {
+            let root = self.root(id as u32) as usize;
+            self.least[root] = self.least[root].min(self.rest[id]);
         }
         let mut any = false;
-        for (id, &root) in roots.iter().enumerate() {
-            if least[root as usize] >= settings.delay && bodies.is_dynamic(id) && !bodies.asleep[id] {
+        for id in 0..bodies.len() {
+            let root = self.root(id as u32);
+            if self.least[root as usize] >= settings.delay && bodies.is_dynamic(id) && !bodies.asleep[id] {
                 bodies.fall_asleep(id);
                 self.island[id] = root;
                 any = true;
