@@ -110,7 +110,7 @@ fn bodies_tables() {
     let rows: usize = option("--rows", "100").parse().expect("--rows takes a number");
     let seconds: f64 = option("--settle", "5").parse().expect("--settle takes a number");
     println!("## {count} bodies of 0.5 m settle, {seconds} s, 4 substeps\n");
-    println!("| bodies | solver | ms per frame | penetration [m] |\n|---|---|---|---|");
+    println!("| bodies | solver | processor time per frame [ms] | penetration [m] |\n|---|---|---|---|");
     for (name, kind) in [("discs", Kind::Discs), ("boxes", Kind::Boxes)] {
         for Settled { solver, milliseconds, penetration, .. } in rigid::settle(kind, count, seconds, 4) {
             println!("| {name} | {solver} | {milliseconds:.2} | {penetration:.4} |");
@@ -118,7 +118,7 @@ fn bodies_tables() {
     }
     let stand: f64 = option("--stand", "10").parse().expect("--stand takes a number");
     println!("\n## A pyramid of {} boxes for {stand} s\n", rows * (rows + 1) / 2);
-    println!("| solver | substeps | stands | ms per frame | penetration [m] |\n|---|---|---|---|---|");
+    println!("| solver | substeps | stands | processor time per frame [ms] | penetration [m] |\n|---|---|---|---|---|");
     for solver in [rigid::stand, rigid::stand_peer] {
         for substeps in [2, 4, 8, 16, 32, 64] {
             let Settled { solver, milliseconds, penetration, stands } = solver(rows, stand, substeps);
