@@ -3,7 +3,9 @@
 mod lattice;
 pub mod roofline;
 mod scenes;
+pub mod sleep;
 pub mod steps;
+mod whole;
 
 pub use lattice::Lattice;
 pub use scenes::{dam_break, pool, solver};

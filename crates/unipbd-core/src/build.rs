@@ -18,6 +18,7 @@ use crate::phase::{MaterialIndex, Phase};
 use crate::rigid::RigidBodies;
 use crate::rng::Rng;
 use crate::scene::{GradientPoint, MaterialRef, Points, Problems, Scene, disc_points};
+use crate::sleep::LiquidSleep;
 use crate::sources::{EmitterSystem, RemovalRules};
 use crate::step::{BodyForce, Parts, Solver, SubstepRule};
 use crate::walls::Walls;
@@ -74,6 +75,7 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     let optional = OptionalColumns {
         temperature: !scene.gas.is_empty(),
         age: removal.as_ref().is_some_and(RemovalRules::needs_age),
+        rest: scene.solver.sleep,
     };
     let mut particles = particles(scene, seed, optional);
     let rigid = rigid_bodies(scene, &mut particles);
@@ -90,6 +92,7 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         smoke: (!scene.smoke.is_empty()).then(|| SmokeAdvection::new(scene)),
         emitters: (!scene.emitter.is_empty() || !scene.injector.is_empty()).then(|| EmitterSystem::new(scene, seed)),
         removal,
+        sleep: LiquidSleep::new(scene, periodic),
         substeps: SubstepRule::new(scene),
         iterations: scene.solver.iterations,
         tolerance: scene.solver.tolerance,

@@ -33,6 +33,7 @@ pub mod rows;
 pub mod scene;
 pub mod shapes;
 pub mod simd;
+mod sleep;
 mod sources;
 pub mod state;
 pub mod step;

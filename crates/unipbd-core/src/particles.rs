@@ -1,13 +1,16 @@
 //! Particles as columns, one row each.
 //!
-//! Rows `[0, dense)` take part in the density and in neighbour lists (liquid, gas, rigid samples);
-//! rows `[dense, len)` are loose: smoke markers and free points. Rows are re-sorted as particles
-//! move, so a row number means nothing between two steps: the id does.
+//! Rows `[0, dense)` take part in the density and in neighbour lists (liquid, gas, rigid samples), the
+//! last of them, `[awake, dense)`, asleep: nothing moves them. Those that sleep near others that are
+//! awake, `[awake, listed)`, have neighbour lists and a pressure all the same. Rows `[dense, len)` are
+//! loose: smoke markers and free points. Rows are re-sorted as particles move, so a row number means
+//! nothing between two steps: the id does.
 
 use crate::bytes::{Damage, Reader, Writer};
 use crate::math::{Real, Vector};
 use crate::parallel::Parallelism;
 use crate::phase::{MaterialIndex, Phase};
+use std::ops::Range;
 
 /// Columns that not every scene has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -16,6 +19,8 @@ pub struct OptionalColumns {
     pub temperature: bool,
     /// Age, for materials with a lifetime.
     pub age: bool,
+    /// How long and since where a particle has been at rest, for liquids that sleep.
+    pub rest: bool,
 }
 
 /// A particle about to be added.
@@ -42,6 +47,8 @@ macro_rules! columns {
         pub struct Particles {
             $( $(#[$doc])* pub(crate) $name: Vec<$type>, )*
             dense: usize,
+            asleep: usize,
+            border: usize,
             next_id: u32,
             optional: OptionalColumns,
             scripted: bool,
@@ -56,17 +63,28 @@ macro_rules! columns {
                 $( self.$name.pop(); )*
             }
 
-            /// Brings the rows into a new order: row `i` becomes what stood in row `order[i]`.
-            pub(crate) fn reorder(&mut self, order: &[u32], parallelism: Parallelism, scratch: &mut Scratch) {
-                $( gather(&mut self.$name, order, parallelism, scratch.buffer()); )*
+            /// Brings the rows from `first` on into a new order: row `first + i` becomes what stood in
+            /// row `first + order[i]`.
+            pub(crate) fn reorder(
+                &mut self,
+                first: usize,
+                order: &[u32],
+                parallelism: Parallelism,
+                scratch: &mut Scratch,
+            ) {
+                if !order.is_empty() {
+                    $( gather(&mut self.$name, first, order, parallelism, scratch.buffer()); )*
+                }
             }
 
             /// Appends every column to a saved state.
             pub(crate) fn write(&self, out: &mut Writer) {
                 $( out.column(&self.$name); )*
                 out.value(self.dense as u64);
+                out.value(self.asleep as u64);
+                out.value(self.border as u64);
                 out.value(self.next_id);
-                let flags = [self.optional.temperature, self.optional.age, self.scripted];
+                let flags = [self.optional.temperature, self.optional.age, self.scripted, self.optional.rest];
                 out.value(flags.into_iter().rev().fold(0_u16, |bits, flag| bits << 1 | u16::from(flag)));
             }
 
@@ -74,9 +92,15 @@ macro_rules! columns {
             pub(crate) fn read(input: &mut Reader<'_>) -> Result<Self, Damage> {
                 let mut particles = Particles { $( $name: input.column()?, )* ..Particles::default() };
                 particles.dense = usize::try_from(input.value::<u64>()?).unwrap_or(usize::MAX);
+                particles.asleep = usize::try_from(input.value::<u64>()?).unwrap_or(usize::MAX);
+                particles.border = usize::try_from(input.value::<u64>()?).unwrap_or(usize::MAX);
                 particles.next_id = input.value()?;
                 let flags = input.value::<u16>()?;
-                particles.optional = OptionalColumns { temperature: flags & 1 != 0, age: flags & 2 != 0 };
+                particles.optional = OptionalColumns {
+                    temperature: flags & 1 != 0,
+                    age: flags & 2 != 0,
+                    rest: flags & 8 != 0,
+                };
                 particles.scripted = flags & 4 != 0;
                 Ok(particles)
             }
@@ -116,6 +140,10 @@ columns! {
     temperature: Real,
     /// Time since the particle was added [s] (optional column).
     age: Real,
+    /// Where the particle came to rest [m] (optional column).
+    anchor: Vector,
+    /// How long its surroundings have been at rest [s] (optional column).
+    rest: Real,
     /// Acceleration that a hook adds in this substep [m/s^2]; empty unless one does.
     acceleration: Vector,
 }
@@ -139,6 +167,38 @@ impl Particles {
     /// Rows that take part in the density.
     pub fn dense(&self) -> usize {
         self.dense
+    }
+
+    /// Dense rows that move: all before the sleeping ones.
+    pub fn awake(&self) -> usize {
+        self.dense - self.asleep
+    }
+
+    /// Dense rows that sleep: held where they are until something near them moves.
+    pub fn asleep(&self) -> usize {
+        self.asleep
+    }
+
+    /// Dense rows with a neighbour list: those awake, and those that sleep near them.
+    pub fn listed(&self) -> usize {
+        self.awake() + self.border
+    }
+
+    /// The rows that move: those awake, and the loose ones.
+    pub(crate) fn bands(&self) -> [Range<usize>; 2] {
+        // One band where nothing sleeps: then loops are cut into the same chunks as ever.
+        if self.asleep == 0 { [0..self.len(), 0..0] } else { [0..self.awake(), self.dense..self.len()] }
+    }
+
+    /// The rows that have a list or need none.
+    pub(crate) fn listed_bands(&self) -> [Range<usize>; 2] {
+        if self.asleep == 0 { [0..self.len(), 0..0] } else { [0..self.listed(), self.dense..self.len()] }
+    }
+
+    /// From now on the last dense rows, this many, sleep; the first of them, `border`, near others
+    /// that are awake.
+    pub(crate) fn set_asleep(&mut self, asleep: usize, border: usize) {
+        (self.asleep, self.border) = (asleep, border);
     }
 
     /// Number of ids given so far: every id is below it.
@@ -244,6 +304,10 @@ impl Particles {
         if self.optional.age {
             self.age.push(0.0);
         }
+        if self.optional.rest {
+            self.anchor.push(new.position);
+            self.rest.push(0.0);
+        }
         if !self.acceleration.is_empty() {
             self.acceleration.push(Vector::ZERO);
         }
@@ -251,6 +315,8 @@ impl Particles {
         if new.phase.is_dense() {
             let last = self.len() - 1;
             self.swap_rows(self.dense, last);
+            self.swap_rows(self.listed(), self.dense);
+            self.swap_rows(self.awake(), self.listed());
             self.dense += 1;
         }
         id
@@ -261,6 +327,7 @@ impl Particles {
         for &row in rows.iter().rev() {
             let mut hole = row as usize;
             if hole < self.dense {
+                hole = self.close_gap(hole);
                 self.dense -= 1;
                 self.swap_rows(hole, self.dense);
                 hole = self.dense;
@@ -296,15 +363,43 @@ macro_rules! buffers {
 }
 buffers!(Vector => vectors, Real => reals, u32 => ids, MaterialIndex => materials, Phase => phases);
 
-fn gather<T: Copy + Send + Sync>(column: &mut Vec<T>, order: &[u32], parallelism: Parallelism, buffer: &mut Vec<T>) {
+impl Particles {
+    /// Moves a dense row that is to go to the end of its kind, and on into the place before the deep
+    /// sleepers; counts it out of those asleep.
+    fn close_gap(&mut self, row: usize) -> usize {
+        let (awake, listed) = (self.awake(), self.listed());
+        let mut hole = row;
+        if hole < awake {
+            self.swap_rows(hole, awake - 1);
+            hole = awake - 1;
+        } else {
+            self.asleep -= 1;
+        }
+        if hole < listed {
+            self.swap_rows(hole, listed - 1);
+            self.border -= usize::from(row >= awake);
+            hole = listed - 1;
+        }
+        hole
+    }
+}
+
+fn gather<T: Copy + Send + Sync>(
+    column: &mut Vec<T>,
+    first: usize,
+    order: &[u32],
+    parallelism: Parallelism,
+    buffer: &mut Vec<T>,
+) {
     if column.is_empty() {
         return;
     }
     // Both buffers grow with the column, so a steady step allocates nothing.
     buffer.reserve(column.capacity().saturating_sub(buffer.len()));
     buffer.clear();
-    buffer.extend_from_slice(column);
-    parallelism.gather(column, buffer, order);
+    let rows = &mut column[first..first + order.len()];
+    buffer.extend_from_slice(rows);
+    parallelism.gather(rows, buffer, order);
 }
 
 #[cfg(test)]
@@ -323,7 +418,7 @@ mod tests {
     }
 
     fn mixed(count: u32) -> Particles {
-        let mut particles = Particles::new(OptionalColumns { temperature: true, age: false });
+        let mut particles = Particles::new(OptionalColumns { temperature: true, ..OptionalColumns::default() });
         for i in 0..count {
             let phase = if i % 3 == 0 { Phase::Smoke } else { Phase::Gas };
             particles.push(particle(phase, i as Real));
@@ -357,12 +452,31 @@ mod tests {
     }
 
     #[test]
+    fn sleeping_rows_stay_the_last_dense_ones() {
+        let mut particles = mixed(30);
+        particles.set_asleep(8, 5);
+        let asleep = |particles: &Particles| particles.id[particles.awake()..particles.dense()].to_vec();
+        let mut expected = asleep(&particles);
+        particles.push(particle(Phase::Gas, 30.0));
+        particles.push(particle(Phase::Smoke, 31.0));
+        let (awake, asleep_row) = (particles.awake() as u32, particles.awake() as u32 + 3);
+        let gone = particles.id[asleep_row as usize];
+        particles.remove_rows(&[2, awake - 1, asleep_row]);
+        expected.retain(|&id| id != gone);
+        let mut found = asleep(&particles);
+        found.sort_unstable();
+        expected.sort_unstable();
+        assert_eq!(found, expected);
+        assert_consistent(&particles);
+    }
+
+    #[test]
     fn reordering_moves_whole_rows() {
         let mut particles = mixed(9);
         let (dense, len) = (particles.dense() as u32, particles.len() as u32);
         let order: Vec<u32> = (0..dense).rev().chain((dense..len).rev()).collect();
         let before = particles.id.clone();
-        particles.reorder(&order, Parallelism::Serial, &mut Scratch::default());
+        particles.reorder(0, &order, Parallelism::Serial, &mut Scratch::default());
         assert_eq!(particles.id[0], before[dense as usize - 1]);
         assert_consistent(&particles);
     }

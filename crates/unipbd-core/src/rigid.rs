@@ -106,6 +106,9 @@ impl RigidBodies {
     /// `loads` are forces times dt^2 by row [kg m].
     pub(crate) fn take_loads(&mut self, loads: &[Vector], particles: &Particles, rows: &RowIndex, dt: f64) {
         for body in 0..self.bodies.len() as u32 {
+            if self.sleeps_with_samples(body, particles, rows) {
+                continue;
+            }
             let center = self.bodies.predicted_pose(body).position;
             let (mut force, mut torque) = (Vector64::ZERO, 0.0);
             for id in self.first_sample[body as usize]..self.first_sample[body as usize + 1] {
@@ -163,10 +166,14 @@ impl RigidBodies {
         found.clear();
         let periodic = neighbors.periodic();
         self.each_sample(rows, |body, _, sample| {
+            if sample >= particles.awake() {
+                return;
+            }
             let x = particles.position[sample];
             neighbors.for_each(sample, |row| {
                 let apart = periodic.min_image(particles.position[row] - x);
                 let movable = particles.phase[row] != Phase::Rigid && particles.inverse_mass[row] > 0.0;
+                let movable = movable && row < particles.awake();
                 if movable && apart.length_squared() < self.near * self.near {
                     found.push(Trespasser { row: row as u32, body });
                 }
@@ -187,6 +194,56 @@ impl RigidBodies {
                 }
             }
         }
+    }
+
+    fn first_row(&self, body: u32, rows: &RowIndex) -> Option<usize> {
+        let ids = self.first_sample[body as usize]..self.first_sample[body as usize + 1];
+        if ids.is_empty() { None } else { rows.row(ids.start).map(|row| row as usize) }
+    }
+
+    /// Whether the samples of a body sleep, with the fluid around it: either all do, or none.
+    fn sleeps_with_samples(&self, body: u32, particles: &Particles, rows: &RowIndex) -> bool {
+        particles.asleep() > 0 && self.first_row(body, rows).is_some_and(|row| row >= particles.awake())
+    }
+
+    /// Whether the sample of this id may sleep: its body is not moved by a script.
+    pub(crate) fn may_rest(&self, id: u32) -> bool {
+        let body = self.first_sample.partition_point(|&first| first <= id) - 1;
+        self.bodies.is_dynamic(body) || !self.bodies.is_active(body)
+    }
+
+    /// Visits the sleeping samples of bodies that are awake.
+    pub(crate) fn each_sample_left_asleep(&self, particles: &Particles, rows: &RowIndex, mut visit: impl FnMut(usize)) {
+        for body in 0..self.bodies.len() as u32 {
+            // A body that a script begins to move was not woken by anybody.
+            let awake = !self.bodies.is_asleep(body) || self.bodies.is_active(body as usize);
+            if awake && self.sleeps_with_samples(body, particles, rows) {
+                let ids = self.first_sample[body as usize]..self.first_sample[body as usize + 1];
+                ids.filter_map(|id| rows.row(id)).for_each(|row| visit(row as usize));
+            }
+        }
+    }
+
+    /// Wakes the bodies, with their islands, that have a sample in a row that is about to wake. Tells
+    /// whether there were any.
+    pub(crate) fn wake_bodies(&mut self, rows: &RowIndex, wakes: impl Fn(usize) -> bool) -> bool {
+        let mut any = false;
+        for body in 0..self.bodies.len() as u32 {
+            let mut ids = self.first_sample[body as usize]..self.first_sample[body as usize + 1];
+            let wakes = |id: u32| rows.row(id).is_some_and(|row| wakes(row as usize));
+            if self.bodies.is_asleep(body) && ids.any(wakes) {
+                self.contacts.wake(&mut self.bodies, body);
+                any = true;
+            }
+        }
+        any
+    }
+
+    /// Puts the bodies to sleep whose samples do.
+    pub(crate) fn lay_down(&mut self, particles: &Particles, rows: &RowIndex) {
+        let tired = |&body: &u32| !self.bodies.is_asleep(body) && self.sleeps_with_samples(body, particles, rows);
+        let tired: Vec<u32> = (0..self.bodies.len() as u32).filter(tired).collect();
+        self.contacts.lay_down(&mut self.bodies, &tired);
     }
 
     /// Ends a frame: sleep, mean loads.

@@ -116,9 +116,32 @@ fn gas_with_smoke_steps_without_allocating() {
 }
 
 #[test]
-fn floating_bodies_allocate_no_more_than_once_a_substep() {
+fn floating_bodies_allocate_only_where_pairs_are_sought_anew() {
     let scene = Scene { body: vec![floating_box(0.8), floating_box(2.2)], ..pool() };
-    assert!(allocations(&scene, 120, 20) <= 20 * (8 + 2));
+    let found = allocations(&scene, 120, 20);
+    assert!(found < 20, "{found} allocations in 160 substeps");
+}
+
+#[test]
+fn a_heap_of_bodies_allocates_only_where_pairs_are_sought_anew() {
+    let bodies = (0..40).map(|k| BodyDescription {
+        restitution: 0.1,
+        ..BodyDescription::rectangle([0.3, 0.3], [0.4 + 0.35 * f64::from(k % 7), 0.2 + 0.35 * f64::from(k / 7)])
+    });
+    let scene = Scene { liquid: Vec::new(), block: Vec::new(), body: bodies.collect(), ..pool() };
+    let found = allocations(&scene, 240, 20);
+    assert!(found < 20, "{found} allocations in 160 substeps");
+}
+
+#[test]
+fn a_pool_that_sleeps_and_one_that_waits_for_it_step_without_allocating() {
+    let sleepy = |viscosity| Scene {
+        liquid: vec![Liquid { viscosity, ..Liquid::new("water", 1000.0) }],
+        solver: SolverSettings { sleep: true, ..fixed(8) },
+        ..pool()
+    };
+    assert_eq!(allocations(&sleepy(0.0), 60, 20), 0);
+    assert_eq!(allocations(&sleepy(0.05), 900, 20), 0);
 }
 
 #[test]

@@ -1,4 +1,5 @@
 use crate::math::Vector;
+use std::ops::Range;
 
 /// What a group wants to move. Added up, then applied by the loop at once.
 #[derive(Clone, Debug, Default)]
@@ -33,10 +34,11 @@ impl Corrections {
         self.displacement[row] += displacement;
     }
 
-    /// Back to zero for this many rows, and this many that may be samples of bodies.
-    pub(crate) fn reset(&mut self, rows: usize, samples: usize) {
-        self.displacement.clear();
+    /// Back to zero for the rows that are written, out of this many, and this many that may be samples
+    /// of bodies.
+    pub(crate) fn reset(&mut self, rows: usize, written: [Range<usize>; 2], samples: usize) {
         self.displacement.resize(rows, Vector::ZERO);
+        written.into_iter().for_each(|band| self.displacement[band].fill(Vector::ZERO));
         self.load.clear();
         self.load.resize(samples, Vector::ZERO);
     }

@@ -26,16 +26,22 @@ impl Solver {
         }
         let mut rows = RowIndex::default();
         rows.rebuild(self.ids());
+        let mut felt = self.world.places(&edit.touched().filter_map(|id| rows.row(id)).collect::<Vec<_>>());
         edit.changes.iter().for_each(|change| self.change(change, &rows));
+        felt.extend(self.world.places(&edit.touched().filter_map(|id| rows.row(id)).collect::<Vec<_>>()));
         self.drive(edit, &rows);
         let mut removed: Vec<u32> = edit.removals.iter().filter_map(|&id| rows.row(id)).collect();
         removed.sort_unstable();
         self.world.parts.particles.remove_rows(&removed);
         edit.additions.iter().for_each(|points| self.pour(points));
+        felt.extend(edit.additions.iter().flat_map(|points| &points.positions).map(|&point| vector(point)));
         let last = self.particles().ids_given();
         let same = removed.is_empty() && first == last;
         let population = if same { Population::Same } else { Population::Changed };
-        self.on_threads(|world| world.edited(population));
+        self.on_threads(|world| {
+            world.edited(population);
+            world.wake_near(&felt);
+        });
         Ok(first..last)
     }
 

@@ -134,6 +134,11 @@ impl Edit {
         self.changes.is_empty() && self.bodies.is_empty() && self.removals.is_empty() && self.additions.is_empty()
     }
 
+    /// The particles that it changes or removes.
+    fn touched(&self) -> impl Iterator<Item = u32> {
+        self.changes.iter().flat_map(|change| change.ids.iter().copied()).chain(self.removals.iter().copied())
+    }
+
     fn change(mut self, ids: impl Into<Vec<u32>>, values: Values) -> Self {
         self.changes.push(Change { ids: ids.into(), values });
         self

@@ -41,7 +41,7 @@ impl Effect for Conduction {
         let rows = particles.dense();
         let root = |row: usize| self.root[usize::from(particles.materials()[row])];
         self.weights.resize(rows, 0.0);
-        self.sums.resize(rows, 0.0);
+        self.sums.resize(particles.listed(), 0.0);
         let weights = &mut self.weights;
         now.parallelism.fill(weights, root);
         let weights = Weights::Column(&self.weights);

@@ -37,16 +37,18 @@ impl VorticityConfinement {
 
     /// omega_i = sum_j V x_ij x (v_j - v_i) g_ij [1/s], and its size.
     fn measure(&mut self, now: Substep<'_>) {
-        let rows = now.particles.dense();
+        let rows = now.particles.listed();
         self.vorticity.resize(rows, 0.0);
-        self.size.resize(rows, 0.0);
+        // Sleeping rows, behind the others, do not turn.
+        self.size.resize(now.particles.dense(), 0.0);
+        self.size[rows..].fill(0.0);
         self.gradient.resize(rows, Vector::ZERO);
         let (positions, velocities) = (now.particles.positions(), now.particles.velocities());
         simd::vorticity(now.pairs(), self.kernel.shape(), positions, velocities, &mut self.vorticity);
         let (vorticity, volume) = (&mut self.vorticity, self.volume);
         now.parallelism.update(vorticity, |_, vorticity| *vorticity *= volume);
         let vorticity = &self.vorticity;
-        now.parallelism.fill(&mut self.size, |row| vorticity[row].abs());
+        now.parallelism.fill(&mut self.size[..rows], |row| vorticity[row].abs());
     }
 }
 

@@ -125,7 +125,7 @@ impl Effect for ShearViscosity {
         let velocities = &particles.velocities()[..rows];
         let (materials, phases) = (particles.materials(), particles.phases());
         self.weights.resize(rows, 0.0);
-        self.sums.resize(rows, Vector::ZERO);
+        self.sums.resize(particles.listed(), Vector::ZERO);
         let root = &self.root;
         now.parallelism.fill(&mut self.weights, |row| match phases[row] {
             Phase::Rigid => 0.0,
@@ -143,7 +143,8 @@ impl Effect for ShearViscosity {
             let (mu, nu) = if stage == 1 { (1.0, 0.0) } else { ((2.0 * s - 1.0) / s, (1.0 - s) / s) };
             self.laplacian(now, now.dt * real(mu * width));
             let (mu, nu, sums) = (real(mu), real(nu), &self.sums);
-            now.parallelism.chunks2(&mut self.now, &mut self.before, |first, last, before| {
+            let (last, before) = (&mut self.now[..sums.len()], &mut self.before[..sums.len()]);
+            now.parallelism.chunks2(last, before, |first, last, before| {
                 for (k, (last, before)) in last.iter_mut().zip(before).enumerate() {
                     let next = *last * mu + *before * nu + sums[first + k];
                     *before = std::mem::replace(last, next);

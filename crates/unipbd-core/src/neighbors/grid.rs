@@ -78,22 +78,32 @@ impl Grid {
     /// among themselves, for locality, and not indexed. Within a cell the old order is kept. The
     /// index speaks of new rows: it is right once the caller has permuted its columns.
     pub fn order(&mut self, positions: &[Vector], dense: usize, radius: Real, parallelism: Parallelism) -> &[u32] {
-        assert!(u32::try_from(positions.len()).is_ok(), "row numbers are 32 bits wide");
-        self.cells = Cells::new(radius, self.periodic);
-        self.rows = dense;
-        let mut order = std::mem::take(&mut self.order);
-        order.resize(positions.len(), 0);
-        let (dense_order, passive_order) = order.split_at_mut(dense);
-        self.sort_passive(&positions[dense..], passive_order, parallelism);
-        passive_order.iter_mut().for_each(|row| *row += dense as u32);
-        self.sort_indexed(&positions[..dense], dense_order, parallelism);
-        self.order = order;
+        let (indexed, passive) = positions.split_at(dense);
+        self.order_both(indexed, passive, radius, parallelism);
+        self.order[dense..].iter_mut().for_each(|row| *row += dense as u32);
         &self.order
     }
 
-    /// The order of the last call of [`order`](Self::order).
-    pub fn last_order(&self) -> &[u32] {
-        &self.order
+    /// As [`order`](Self::order), of two columns: returns the order of the indexed rows, and that of
+    /// the passive ones among themselves.
+    pub(super) fn order_both(
+        &mut self,
+        indexed: &[Vector],
+        passive: &[Vector],
+        radius: Real,
+        parallelism: Parallelism,
+    ) -> (&[u32], &[u32]) {
+        let rows = indexed.len() + passive.len();
+        assert!(u32::try_from(rows).is_ok(), "row numbers are 32 bits wide");
+        self.cells = Cells::new(radius, self.periodic);
+        self.rows = indexed.len();
+        let mut order = std::mem::take(&mut self.order);
+        order.resize(rows, 0);
+        let (indexed_order, passive_order) = order.split_at_mut(indexed.len());
+        self.sort_passive(passive, passive_order, parallelism);
+        self.sort_indexed(indexed, indexed_order, parallelism);
+        self.order = order;
+        self.order.split_at(self.rows)
     }
 
     fn take_table(&mut self) -> Vec<u32> {

@@ -85,6 +85,7 @@ impl Chunk {
 pub struct NeighborList {
     chunks: Vec<Chunk>,
     rows: usize,
+    reach: usize,
     radius: Real,
 }
 
@@ -93,18 +94,39 @@ impl NeighborList {
     /// been ordered for this radius or a larger one. `positions` are those the grid was ordered by,
     /// permuted by that order. Within a list, neighbours come in the order in which the grid's runs come.
     pub fn build(&mut self, grid: &Grid, positions: &[Vector], radius: Real, parallelism: Parallelism) {
-        self.build_at(Level::best(), grid, positions, radius, parallelism);
+        self.build_at(Level::best(), (grid, &[]), &positions[..grid.rows()], radius, parallelism);
     }
 
-    fn build_at(&mut self, level: Level, grid: &Grid, positions: &[Vector], radius: Real, parallelism: Parallelism) {
-        let positions = &positions[..grid.rows()];
-        self.rows = positions.len();
+    /// As [`build`](Self::build), with rows behind those of `grid`, indexed by two more: those of the
+    /// first have a list too, those of the second are neighbours alone.
+    pub(super) fn build_beside(
+        &mut self,
+        grid: &Grid,
+        behind: &[Grid; 2],
+        positions: &[Vector],
+        radius: Real,
+        parallelism: Parallelism,
+    ) {
+        let rows = grid.rows() + behind.iter().map(Grid::rows).sum::<usize>();
+        self.build_at(Level::best(), (grid, behind), &positions[..rows], radius, parallelism);
+    }
+
+    fn build_at(
+        &mut self,
+        level: Level,
+        (grid, behind): (&Grid, &[Grid]),
+        positions: &[Vector],
+        radius: Real,
+        parallelism: Parallelism,
+    ) {
+        self.rows = grid.rows() + behind.first().map_or(0, Grid::rows);
+        self.reach = positions.len();
         self.radius = radius;
         let used = self.rows.div_ceil(CHUNK_ROWS);
         // Chunks beyond the last row keep their memory for when there are more rows again.
         self.chunks.resize_with(used.max(self.chunks.len()), Chunk::default);
         self.chunks[used..].iter_mut().for_each(Chunk::clear);
-        let search = &Search { grid, positions, radius };
+        let search = &Search { grid, behind, rows: self.rows, positions, radius };
         if grid.periodic().any() {
             let space = Wrapped::new(grid.periodic());
             parallelism.each(self.rows, &mut self.chunks[..used], |number, chunk| {
@@ -121,6 +143,12 @@ impl NeighborList {
     #[inline]
     pub fn rows(&self) -> usize {
         self.rows
+    }
+
+    /// Every neighbour is below this row: columns that are read at neighbours have as many.
+    #[inline]
+    pub fn reach(&self) -> usize {
+        self.reach
     }
 
     /// The radius of the list [m].
@@ -186,6 +214,11 @@ const TOGETHER: Real = 4.0;
 /// What the list is built from.
 struct Search<'a> {
     grid: &'a Grid,
+    /// Indexes of the rows behind those of `grid`, one after the other.
+    behind: &'a [Grid],
+    /// Rows with a list.
+    rows: usize,
+    /// Positions of the rows of all.
     positions: &'a [Vector],
     radius: Real,
 }
@@ -203,11 +236,12 @@ impl<S: Space> Work for Build<'_, S> {
     fn run<N: Near>(self, near: N) {
         let Build { search, space, number, chunk } = self;
         let first = number * CHUNK_ROWS;
-        let last = search.positions.len().min(first + CHUNK_ROWS);
+        let rows = search.rows;
+        let last = rows.min(first + CHUNK_ROWS);
         chunk.clear();
-        let mut cursor = Cursor::default();
+        let mut cursors: [Cursor; 3] = std::array::from_fn(|_| Cursor::default());
         for base in (first..last).step_by(LANES) {
-            chunk.scratch.found.start(base, search.positions);
+            chunk.scratch.found.start(base, &search.positions[..rows]);
             let lanes = LANES.min(last - base);
             let together = search.extent(&chunk.scratch.found.centers);
             chunk.scratch.reach = base as u32..base as u32;
@@ -217,14 +251,14 @@ impl<S: Space> Work for Build<'_, S> {
                     Some((low, high)) => (low, high, 0..lanes),
                     None => (search.positions[base + turn], search.positions[base + turn], turn..turn + 1),
                 };
-                chunk.scratch.find_runs(search, low, high, &mut cursor);
+                chunk.scratch.find_runs(search, low, high, &mut cursors);
                 for k in 0..chunk.scratch.runs.len() {
                     let run = chunk.scratch.runs[k].start as usize..chunk.scratch.runs[k].end as usize;
                     let limit = search.radius * search.radius;
                     near.find(space, limit, search.positions, run, lanes.clone(), &mut chunk.scratch.found);
                 }
             }
-            chunk.push(near, base, search.positions.len());
+            chunk.push(near, base, rows);
         }
     }
 }
@@ -259,12 +293,21 @@ struct Scratch {
 impl Scratch {
     /// Collects the runs around a box.
     #[inline(always)]
-    fn find_runs(&mut self, search: &Search<'_>, low: Vector, high: Vector, cursor: &mut Cursor) {
+    fn find_runs(&mut self, search: &Search<'_>, low: Vector, high: Vector, cursors: &mut [Cursor; 3]) {
         self.runs.clear();
-        search.grid.for_each_run_around(low, high, search.radius, cursor, |run| {
+        let (cursor, cursors) = cursors.split_at_mut(1);
+        let mut keep = |run: Range<u32>| {
             self.reach = self.reach.start.min(run.start)..self.reach.end.max(run.end);
             self.runs.push(run);
-        });
+        };
+        search.grid.for_each_run_around(low, high, search.radius, &mut cursor[0], &mut keep);
+        let mut first = search.grid.rows() as u32;
+        for (grid, cursor) in search.behind.iter().zip(cursors) {
+            grid.for_each_run_around(low, high, search.radius, cursor, |run| {
+                keep(run.start + first..run.end + first);
+            });
+            first += grid.rows() as u32;
+        }
     }
 }
 
@@ -331,10 +374,10 @@ mod tests {
                 let order = grid.order(&points, rows, 1.5, Parallelism::Serial);
                 let sorted: Vec<_> = order.iter().map(|&row| points[row as usize]).collect();
                 let mut oracle = NeighborList::default();
-                oracle.build_at(Level::Scalar, &grid, &sorted, 1.5, Parallelism::Serial);
+                oracle.build_at(Level::Scalar, (&grid, &[]), &sorted, 1.5, Parallelism::Serial);
                 for level in Level::available() {
                     let mut list = NeighborList::default();
-                    list.build_at(level, &grid, &sorted, 1.5, Parallelism::Serial);
+                    list.build_at(level, (&grid, &[]), &sorted, 1.5, Parallelism::Serial);
                     assert!(columns(&list) == columns(&oracle), "{level:?}, {rows} rows, {periodic:?}");
                 }
             }

@@ -1,6 +1,6 @@
 //! The neighbour search of a run: grid, list and skin, kept valid while particles move.
 
-use super::{Grid, Motion, NeighborList, Periodic, SkinList};
+use super::{Cursor, Grid, Motion, NeighborList, Periodic, SkinList};
 use crate::bytes::{Damage, Reader, Writer};
 use crate::math::{Real, Vector};
 use crate::parallel::Parallelism;
@@ -65,12 +65,19 @@ impl SavedList {
 }
 
 /// Where the rows near a point are.
-#[derive(Clone, Debug, Default)]
+#[derive(Clone, Debug)]
 pub(crate) struct Runs {
     /// Rows of the grid are higher than a search reaches, so it touches three, or four by rounding; the
     /// border of a periodic axis cuts each of both directions in two.
-    runs: [Range<u32>; 16],
+    /// As many again of both kinds of sleeping rows.
+    runs: [Range<u32>; 48],
     count: usize,
+}
+
+impl Default for Runs {
+    fn default() -> Self {
+        Runs { runs: std::array::from_fn(|_| 0..0), count: 0 }
+    }
 }
 
 impl Runs {
@@ -90,6 +97,10 @@ pub struct Neighbors {
     /// Skin kept for the small moves of the projection, so that velocity passes find their pairs.
     least_skin: Real,
     reference: Vec<Vector>,
+    /// The sleeping rows, behind those of `grid`: those near others that are awake, then the rest.
+    still: [Grid; 2],
+    /// Whether the sleeping rows are those that `still` has sorted.
+    still_sorted: bool,
     scratch: Scratch,
 }
 
@@ -103,6 +114,8 @@ impl Neighbors {
             radius,
             least_skin,
             reference: Vec::new(),
+            still: [Grid::new(periodic), Grid::new(periodic)],
+            still_sorted: true,
             scratch: Scratch::default(),
         }
     }
@@ -132,13 +145,26 @@ impl Neighbors {
             runs.runs[runs.count] = run.start as u32..run.end as u32;
             runs.count += 1;
         });
+        let mut first = self.grid.rows() as u32;
+        for still in self.still.iter().filter(|still| still.rows() > 0) {
+            still.for_each_run(point, self.radius, &mut Cursor::default(), |run| {
+                runs.runs[runs.count] = run.start + first..run.end + first;
+                runs.count += 1;
+            });
+            first += still.rows() as u32;
+        }
         runs
     }
 
     /// Visits every dense row within `radius` of any point, and some more.
     #[inline]
-    pub fn for_each_near(&self, point: Vector, radius: Real, visit: impl FnMut(usize)) {
-        self.list.for_each_near(&self.grid, &self.motion, point, radius, visit);
+    pub fn for_each_near(&self, point: Vector, radius: Real, mut visit: impl FnMut(usize)) {
+        self.list.for_each_near(&self.grid, &self.motion, point, radius, &mut visit);
+        let mut first = self.grid.rows();
+        for still in &self.still {
+            still.for_each_near(point, radius, |row| visit(first + row));
+            first += still.rows();
+        }
     }
 
     /// Lists built so far.
@@ -154,6 +180,13 @@ impl Neighbors {
     /// The next [`prepare`](Self::prepare) makes a new list: rows were added or removed.
     pub fn invalidate(&mut self) {
         self.list.invalidate();
+        self.still_sorted = false;
+    }
+
+    /// Brings the dense rows into a new order. The list is invalid until the next [`prepare`](Self::prepare).
+    pub(crate) fn reorder_dense(&mut self, particles: &mut Particles, order: &[u32], parallelism: Parallelism) {
+        particles.reorder(0, order, parallelism, &mut self.scratch);
+        self.invalidate();
     }
 
     /// Makes sure the list holds every pair for the positions to cover; re-sorts all rows if it must
@@ -167,33 +200,72 @@ impl Neighbors {
     }
 
     fn holds(&mut self, particles: &Particles, cover: Cover, parallelism: Parallelism) -> bool {
-        let rows = particles.dense();
-        if self.list.reference().len() != rows || self.list.skin() < 0.0 {
+        if self.list.reference().len() != particles.listed() || self.list.skin() < 0.0 {
             return false;
         }
-        self.motion = self.list.motion(&self.grid, particles.positions(), parallelism);
+        self.motion = self.moved_to(particles.positions(), parallelism);
         if !self.list.covers(&self.motion) {
             return false;
         }
-        cover == Cover::Predicted || {
-            let motion = self.list.motion(&self.grid, particles.starts(), parallelism);
-            self.list.covers(&motion)
-        }
+        cover == Cover::Predicted || self.list.covers(&self.moved_to(particles.starts(), parallelism))
+    }
+
+    /// How the rows of the list have moved since it was built.
+    fn moved_to(&self, positions: &[Vector], parallelism: Parallelism) -> Motion {
+        self.seen(self.list.motion(&self.grid, positions, parallelism))
+    }
+
+    /// A motion of those awake as all dense rows see it.
+    fn seen(&self, motion: Motion) -> Motion {
+        if self.anything_still() { motion.beside_still_ones() } else { motion }
+    }
+
+    fn anything_still(&self) -> bool {
+        self.still.iter().any(|still| still.rows() > 0)
     }
 
     fn rebuild(&mut self, particles: &mut Particles, cover: Cover, parallelism: Parallelism) {
-        let rows = particles.dense();
-        let (start, end) = (&particles.starts()[..rows], &particles.positions()[..rows]);
-        let step = Motion::between(start, end, &self.grid, parallelism).needed_skin();
+        if !self.still_sorted {
+            self.sort_still(particles, parallelism);
+        }
+        let (awake, dense) = (particles.awake(), particles.dense());
+        let (start, end) = (&particles.starts()[..awake], &particles.positions()[..awake]);
+        let step = self.seen(Motion::between(start, end, &self.grid, parallelism)).needed_skin();
         let skin = self.skin(step, cover);
         self.set_reference(particles, cover, parallelism);
         // Smoke follows the dense rows only to stay near them in memory.
         let radius = SkinList::list_radius(self.radius, skin);
-        self.grid.order(&self.reference, rows, radius, parallelism);
-        particles.reorder(self.grid.last_order(), parallelism, &mut self.scratch);
+        let (indexed, loose) = (&self.reference[..awake], &self.reference[dense..]);
+        let (order, loose_order) = self.grid.order_both(indexed, loose, radius, parallelism);
+        particles.reorder(0, order, parallelism, &mut self.scratch);
+        particles.reorder(dense, loose_order, parallelism, &mut self.scratch);
         self.set_reference(particles, cover, parallelism);
-        self.list.build(&self.grid, &self.reference, self.radius, skin, parallelism);
-        self.motion = self.list.motion(&self.grid, particles.positions(), parallelism);
+        self.build_list(skin, parallelism);
+        self.motion = self.moved_to(particles.positions(), parallelism);
+    }
+
+    fn build_list(&mut self, skin: Real, parallelism: Parallelism) {
+        if self.anything_still() {
+            self.list.build_beside(&self.grid, &self.still, &self.reference, self.radius, skin, parallelism);
+        } else {
+            self.list.build(&self.grid, &self.reference, self.radius, skin, parallelism);
+        }
+    }
+
+    /// Sorts the sleeping rows among themselves: once, until others sleep.
+    fn sort_still(&mut self, particles: &mut Particles, parallelism: Parallelism) {
+        self.still_sorted = true;
+        if particles.asleep() == 0 && !self.anything_still() {
+            return;
+        }
+        let radius = self.still_radius();
+        for (still, rows) in self.still.iter_mut().zip(still_rows(particles)) {
+            let (order, _) = still.order_both(&particles.positions()[rows.clone()], &[], radius, parallelism);
+            particles.reorder(rows.start, order, parallelism, &mut self.scratch);
+        }
+        let rows = particles.awake()..particles.dense();
+        self.reference.resize(particles.len(), Vector::ZERO);
+        self.reference[rows.clone()].copy_from_slice(&particles.positions()[rows]);
     }
 
     /// The cheapest skin for particles that come nearer by up to `step` per substep: a list that lasts
@@ -211,12 +283,15 @@ impl Neighbors {
         let (start, end) = (particles.starts(), particles.positions());
         let periodic = self.grid.periodic();
         self.reference.resize(end.len(), Vector::ZERO);
-        match cover {
-            Cover::Predicted => self.reference.copy_from_slice(end),
-            Cover::StartAndPredicted => parallelism.fill(&mut self.reference, |row| {
-                let middle = start[row] + 0.5 * periodic.min_image(end[row] - start[row]);
-                periodic.wrap(middle)
-            }),
+        for rows in particles.bands() {
+            let first = rows.start;
+            match cover {
+                Cover::Predicted => self.reference[rows.clone()].copy_from_slice(&end[rows]),
+                Cover::StartAndPredicted => parallelism.fill(&mut self.reference[rows], |row| {
+                    let (start, end) = (start[first + row], end[first + row]);
+                    periodic.wrap(start + 0.5 * periodic.min_image(end - start))
+                }),
+            }
         }
     }
 
@@ -227,18 +302,38 @@ impl Neighbors {
 
     /// Makes the list of a saved state again; rows already stand in its order.
     pub(crate) fn restore(&mut self, particles: &Particles, saved: &SavedList, parallelism: Parallelism) {
-        let reference = &saved.reference;
-        if reference.len() != particles.dense() || saved.skin < 0.0 {
+        if saved.reference.len() != particles.listed() || saved.skin < 0.0 {
             self.invalidate();
             return;
         }
-        self.grid.order(reference, reference.len(), SkinList::list_radius(self.radius, saved.skin), parallelism);
-        self.list.build(&self.grid, reference, self.radius, saved.skin, parallelism);
+        self.reference.clone_from(&saved.reference);
+        let radius = SkinList::list_radius(self.radius, saved.skin);
+        self.grid.order_both(&saved.reference[..particles.awake()], &[], radius, parallelism);
+        let radius = self.still_radius();
+        for (still, rows) in self.still.iter_mut().zip(still_rows(particles)) {
+            still.order_both(&particles.positions()[rows], &[], radius, parallelism);
+        }
+        self.still_sorted = true;
+        self.reference.extend_from_slice(&particles.positions()[particles.listed()..particles.dense()]);
+        self.build_list(saved.skin, parallelism);
         self.motion = saved.motion;
+    }
+
+    /// What the sleeping rows are sorted for [m].
+    fn still_radius(&self) -> Real {
+        self.radius * (1.0 + LONGEST_SKIN)
     }
 
     /// Memory held [bytes].
     pub fn memory_bytes(&self) -> usize {
-        self.grid.memory_bytes() + self.list.memory_bytes() + self.reference.capacity() * size_of::<Vector>()
+        self.grid.memory_bytes()
+            + self.still.iter().map(Grid::memory_bytes).sum::<usize>()
+            + self.list.memory_bytes()
+            + self.reference.capacity() * size_of::<Vector>()
     }
+}
+
+/// The sleeping rows: those near others that are awake, and the rest.
+fn still_rows(particles: &Particles) -> [Range<usize>; 2] {
+    [particles.awake()..particles.listed(), particles.listed()..particles.dense()]
 }

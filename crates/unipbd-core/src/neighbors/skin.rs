@@ -44,6 +44,12 @@ impl Motion {
         Motion { drift, deviation: parallelism.max(from.len(), distance).sqrt() }
     }
 
+    /// This motion beside rows that do not move at all.
+    #[must_use]
+    pub(super) fn beside_still_ones(self) -> Motion {
+        Motion { drift: Vector::ZERO, deviation: self.deviation + self.drift.length() }
+    }
+
     /// The skin a list needs to survive this motion [m].
     pub fn needed_skin(&self) -> Real {
         // Displacements, and distances within the list, are rounded.
@@ -81,10 +87,28 @@ impl SkinList {
     /// `grid` must have been ordered by `reference` for [`list_radius`](Self::list_radius), and
     /// `reference` permuted by that order.
     pub fn build(&mut self, grid: &Grid, reference: &[Vector], radius: Real, skin: Real, parallelism: Parallelism) {
-        let reference = &reference[..grid.rows()];
         self.list.build(grid, reference, Self::list_radius(radius, skin), parallelism);
+        self.note_build(reference, radius, skin);
+    }
+
+    /// As [`build`](Self::build), with rows that do not move behind those of `grid`, in two more: those
+    /// of the first have a list too.
+    pub(super) fn build_beside(
+        &mut self,
+        grid: &Grid,
+        still: &[Grid; 2],
+        reference: &[Vector],
+        radius: Real,
+        skin: Real,
+        parallelism: Parallelism,
+    ) {
+        self.list.build_beside(grid, still, reference, Self::list_radius(radius, skin), parallelism);
+        self.note_build(reference, radius, skin);
+    }
+
+    fn note_build(&mut self, reference: &[Vector], radius: Real, skin: Real) {
         self.reference.clear();
-        self.reference.extend_from_slice(reference);
+        self.reference.extend_from_slice(&reference[..self.list.rows()]);
         (self.radius, self.skin) = (radius, Self::capped(radius, skin));
         self.builds += 1;
     }

@@ -33,6 +33,8 @@ pub struct SolverSettings {
     pub artificial_pressure: f64,
     /// Substeps without gravity before time 0 that bring the start to its rest density.
     pub settle_substeps: u32,
+    /// Whether liquid at rest falls asleep: it is held where it is, at no cost, until something near it moves.
+    pub sleep: bool,
 }
 
 impl Default for SolverSettings {
@@ -50,6 +52,7 @@ impl Default for SolverSettings {
             constraint_mixing: 0.0,
             artificial_pressure: 0.0,
             settle_substeps: 40,
+            sleep: false,
         }
     }
 }

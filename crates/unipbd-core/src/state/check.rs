@@ -29,12 +29,16 @@ impl Particles {
         let always = [self.start.len(), self.displacement.len(), self.remainder.len(), self.velocity.len()];
         let also = [self.inverse_mass.len(), self.density_error.len(), self.multiplier.len(), self.id.len()];
         let last = [self.material.len(), self.phase.len()];
-        let optional = [self.temperature.len(), self.age.len()];
+        let optional = [self.temperature.len(), self.age.len(), self.anchor.len(), self.rest.len()];
         let whole = always.into_iter().chain(also).chain(last).all(|length| length == rows);
         if !whole || optional.into_iter().any(|length| length != 0 && length != rows) {
             return Err("its columns differ in length");
         }
-        if self.dense() > rows || (0..rows).any(|row| self.phase[row].is_dense() != (row < self.dense())) {
+        if self.dense() > rows
+            || self.asleep() > self.dense()
+            || self.listed() > self.dense()
+            || (0..rows).any(|row| self.phase[row].is_dense() != (row < self.dense()))
+        {
             return Err("its rows are out of order");
         }
         let mut ids = self.id.clone();
@@ -42,9 +46,11 @@ impl Particles {
         if ids.windows(2).any(|pair| pair[0] == pair[1]) || ids.last().is_some_and(|&id| id >= self.ids_given()) {
             return Err("its ids are not those of one run");
         }
-        let vectors = [&self.position, &self.start, &self.displacement, &self.remainder, &self.velocity];
-        let numbers = [&self.inverse_mass, &self.density_error, &self.multiplier, &self.temperature, &self.age];
-        let finite = vectors.into_iter().flatten().all(|vector| vector.is_finite())
+        let kinematics = [&self.position, &self.start, &self.displacement, &self.remainder, &self.velocity];
+        let vectors = kinematics.into_iter().chain([&self.anchor]);
+        let traits = [&self.inverse_mass, &self.density_error, &self.multiplier];
+        let numbers = traits.into_iter().chain([&self.temperature, &self.age, &self.rest]);
+        let finite = vectors.flatten().all(|vector| vector.is_finite())
             && numbers.into_iter().flatten().all(|number| number.is_finite());
         if finite { Ok(()) } else { Err("a number is not finite") }
     }

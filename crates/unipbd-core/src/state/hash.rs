@@ -8,7 +8,7 @@ use crate::rng::mix;
 use crate::step::Solver;
 
 impl Solver {
-    /// Hash of the state: id, material, position, remainder, velocity, mass, temperature and age of
+    /// Hash of the state: id, material, position, remainder, velocity, mass, temperature, age and sleep of
     /// every particle, pose and velocity of every body, and the number of substeps done. Independent of the order of rows, so the same
     /// on any number of threads; two states with the same hash go on the same.
     pub fn state_hash(&self) -> u64 {
@@ -41,6 +41,11 @@ fn particle_hash(particles: &Particles, row: usize) -> u64 {
         if let Some(&value) = column.get(row) {
             add(real_bits(value));
         }
+    }
+    if let (Some(&anchor), Some(&rest)) = (particles.anchor.get(row), particles.rest.get(row)) {
+        bits(anchor).into_iter().for_each(&mut add);
+        add(real_bits(rest));
+        add(u64::from((particles.awake()..particles.dense()).contains(&row)));
     }
     hash
 }

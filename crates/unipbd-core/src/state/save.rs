@@ -110,7 +110,9 @@ impl Solver {
         }
         let optional = parts.particles.optional();
         let rows = |wanted: bool| if wanted { particles.len() } else { 0 };
-        if particles.temperature.len() != rows(optional.temperature) || particles.age.len() != rows(optional.age) {
+        let wanted = [optional.temperature, optional.age, optional.rest, optional.rest].map(rows);
+        let found = [&particles.temperature, &particles.age, &particles.rest].map(Vec::len);
+        if found != wanted[..3] || particles.anchor.len() != wanted[3] || particles.asleep() > rows(optional.rest) {
             return Err(damaged("a column is missing"));
         }
         Ok(())

@@ -20,6 +20,7 @@ pub(super) fn structure(solver: &Solver) -> Vec<String> {
     lines.extend(parts.materials.iter().map(material));
     lines.push(format!("{} temperatures", if optional.temperature { "particles with" } else { "no" }));
     lines.push(format!("{} ages", if optional.age { "particles with" } else { "no" }));
+    lines.push(format!("liquids that {}sleep", if optional.rest { "" } else { "do not " }));
     let emitters = parts.emitters.as_ref().map_or_else(Vec::new, |emitters| emitters.columns().collect());
     lines.push(format!("{} emitters with {emitters:?} columns", emitters.len()));
     lines.push(format!("{} constraint groups", parts.groups.len()));

@@ -23,6 +23,7 @@ pub struct BodyForce {
 
 /// u = dt v + dt^2 a, x = x_n + u, for every row that has inertia; rows moved by a script keep their velocity.
 pub(super) fn predict(particles: &mut Particles, forces: &[BodyForce], dt: Real, parallelism: Parallelism) {
+    let bands = particles.bands();
     let (material, phase, inverse_mass) = (&particles.material, &particles.phase, &particles.inverse_mass);
     let (temperature, acceleration) = (&particles.temperature, &particles.acceleration);
     let remainder = &particles.remainder;
@@ -37,51 +38,63 @@ pub(super) fn predict(particles: &mut Particles, forces: &[BodyForce], dt: Real,
         }
         velocity
     };
-    let (velocity, start) = (&mut particles.velocity, &mut particles.start);
-    let (displacement, position) = (&mut particles.displacement, &mut particles.position);
-    parallelism.chunks4(velocity, start, displacement, position, |first, velocity, start, displacement, position| {
-        for k in 0..velocity.len() {
-            let row = first + k;
-            velocity[k] = pulled(row, velocity[k]);
-            start[k] = position[k];
-            if phase[row] != Phase::Smoke {
-                displacement[k] = velocity[k] * dt;
-                position[k] = start[k] + (displacement[k] + remainder[row]);
-            }
-        }
-    });
+    for rows in bands {
+        let band = rows.start;
+        let (velocity, start) = (&mut particles.velocity[rows.clone()], &mut particles.start[rows.clone()]);
+        let (displacement, position) = (&mut particles.displacement[rows.clone()], &mut particles.position[rows]);
+        parallelism.chunks4(
+            velocity,
+            start,
+            displacement,
+            position,
+            |first, velocity, start, displacement, position| {
+                for k in 0..velocity.len() {
+                    let row = band + first + k;
+                    velocity[k] = pulled(row, velocity[k]);
+                    start[k] = position[k];
+                    if phase[row] != Phase::Smoke {
+                        displacement[k] = velocity[k] * dt;
+                        position[k] = start[k] + (displacement[k] + remainder[row]);
+                    }
+                }
+            },
+        );
+    }
 }
 
 /// Adds corrections to the displacements, keeps particles out of walls, moves positions along.
 pub(super) fn apply(particles: &mut Particles, corrections: &Corrections, walls: &Walls, parallelism: Parallelism) {
-    let steps = corrections.displacements();
+    let (steps, bands) = (corrections.displacements(), particles.bands());
     let (phase, start) = (&particles.phase, &particles.start);
     let (inverse_mass, remainder) = (&particles.inverse_mass, &particles.remainder);
-    let (displacement, position) = (&mut particles.displacement, &mut particles.position);
-    parallelism.chunks2(displacement, position, |first, displacement, position| {
-        for k in 0..displacement.len() {
-            let row = first + k;
-            if phase[row] == Phase::Smoke {
-                continue;
-            }
-            if inverse_mass[row] > 0.0 {
-                displacement[k] += steps[row];
-                let place = start[row] + (displacement[k] + remainder[row]);
-                let mut touches = false;
-                for hit in walls.hits(place) {
-                    displacement[k] += hit.normal * hit.depth;
-                    touches = true;
+    for rows in bands {
+        let band = rows.start;
+        let (displacement, position) = (&mut particles.displacement[rows.clone()], &mut particles.position[rows]);
+        parallelism.chunks2(displacement, position, |first, displacement, position| {
+            for k in 0..displacement.len() {
+                let row = band + first + k;
+                if phase[row] == Phase::Smoke {
+                    continue;
                 }
-                // Friction comes after all walls: in a corner one wall must not undo the way that the
-                // other pushes back.
-                if touches {
-                    walls.hits(place).for_each(|hit| displacement[k] -= held_back(displacement[k], &hit));
+                if inverse_mass[row] > 0.0 {
+                    displacement[k] += steps[row];
+                    let place = start[row] + (displacement[k] + remainder[row]);
+                    let mut touches = false;
+                    for hit in walls.hits(place) {
+                        displacement[k] += hit.normal * hit.depth;
+                        touches = true;
+                    }
+                    // Friction comes after all walls: in a corner one wall must not undo the way that the
+                    // other pushes back.
+                    if touches {
+                        walls.hits(place).for_each(|hit| displacement[k] -= held_back(displacement[k], &hit));
+                    }
                 }
+                // x = x_n + (u + rem).
+                position[k] = start[row] + (displacement[k] + remainder[row]);
             }
-            // x = x_n + (u + rem).
-            position[k] = start[row] + (displacement[k] + remainder[row]);
-        }
-    });
+        });
+    }
 }
 
 /// The part of a displacement along a wall that Coulomb friction takes away.
@@ -97,21 +110,25 @@ fn held_back(displacement: Vector, hit: &Hit) -> Vector {
 
 /// v = u/dt, and the new remainders and ages; positions on a periodic axis return into the domain.
 pub(super) fn update_velocities(particles: &mut Particles, dt: Real, periodic: Periodic, parallelism: Parallelism) {
-    let inverse_dt = 1.0 / dt;
+    let (inverse_dt, bands) = (1.0 / dt, particles.bands());
     let (phase, inverse_mass) = (&particles.phase, &particles.inverse_mass);
     let (displacement, start, position) = (&particles.displacement, &particles.start, &particles.position);
-    parallelism.chunks2(&mut particles.velocity, &mut particles.remainder, |first, velocity, remainder| {
-        for k in 0..velocity.len() {
-            let row = first + k;
-            if phase[row] == Phase::Smoke {
-                continue;
+    for rows in bands {
+        let band = rows.start;
+        let (velocity, remainder) = (&mut particles.velocity[rows.clone()], &mut particles.remainder[rows]);
+        parallelism.chunks2(velocity, remainder, |first, velocity, remainder| {
+            for k in 0..velocity.len() {
+                let row = band + first + k;
+                if phase[row] == Phase::Smoke {
+                    continue;
+                }
+                if inverse_mass[row] > 0.0 {
+                    velocity[k] = displacement[row] * inverse_dt;
+                }
+                remainder[k] = left_over(displacement[row], remainder[k], position[row] - start[row]);
             }
-            if inverse_mass[row] > 0.0 {
-                velocity[k] = displacement[row] * inverse_dt;
-            }
-            remainder[k] = left_over(displacement[row], remainder[k], position[row] - start[row]);
-        }
-    });
+        });
+    }
     parallelism.update(&mut particles.age, |_, age| *age += dt);
     wrap(particles, periodic, parallelism);
 }
@@ -136,7 +153,9 @@ fn left_over(displacement: Vector, remainder: Vector, moved: Vector) -> Vector {
 /// Brings positions on periodic axes back into the domain.
 pub(super) fn wrap(particles: &mut Particles, periodic: Periodic, parallelism: Parallelism) {
     if periodic.any() {
-        parallelism.update(&mut particles.position, |_, position| *position = periodic.wrap(*position));
+        for rows in particles.bands() {
+            parallelism.update(&mut particles.position[rows], |_, position| *position = periodic.wrap(*position));
+        }
     }
 }
 

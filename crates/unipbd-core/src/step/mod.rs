@@ -5,6 +5,7 @@ mod diagnose;
 mod error;
 mod integrate;
 mod pipeline;
+mod sleep;
 mod solver;
 mod stages;
 mod substeps;

@@ -27,6 +27,8 @@ pub enum Stage {
     Effects,
     /// Smoke moves with its carrier.
     AdvectSmoke,
+    /// Once per frame, at its end, where liquids may: what is at rest falls asleep, what is disturbed wakes.
+    Sleep,
 }
 
 impl Stage {
@@ -45,6 +47,7 @@ impl Stage {
             Stage::FinishGroups => "finish_groups",
             Stage::Effects => "effects",
             Stage::AdvectSmoke => "advect_smoke",
+            Stage::Sleep => "sleep",
         }
     }
 }

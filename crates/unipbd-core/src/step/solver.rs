@@ -24,6 +24,8 @@ pub struct FrameReport {
     pub emitted: u64,
     /// Particles removed.
     pub removed: u64,
+    /// Rows stepped, all substeps together: all but the sleeping ones.
+    pub rows_stepped: u64,
 }
 
 impl Solver {
@@ -66,13 +68,14 @@ impl Solver {
     ) -> Result<FrameReport, E> {
         let begun = self.on_threads(World::begin_frame);
         while self.world.begin_substep() {
+            self.world.hooked = self.world.parts.particles.asleep() > 0;
             if let Err(error) = hook(&mut SubstepView::new(&mut self.world)) {
                 self.world.parts.particles.clear_accelerations();
                 return Err(error);
             }
             self.on_threads(World::finish_substep)?;
         }
-        Ok(self.world.end_frame(begun))
+        Ok(self.on_threads(|world| world.end_frame(begun)))
     }
 
     /// Projects the start without gravity until it is at rest density.
@@ -82,6 +85,8 @@ impl Solver {
 
     /// Adds a constraint group behind those of the scene. The stages are planned anew.
     pub fn add_group(&mut self, group: Box<dyn ConstraintGroup>) {
+        // It may move what sleeps.
+        self.on_threads(World::wake_for_good);
         self.world.parts.groups.push(group);
         self.world.plan();
     }

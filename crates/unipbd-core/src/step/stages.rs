@@ -16,14 +16,19 @@ pub(crate) const ABSURD_SPEED: f64 = 1e6;
 impl World {
     /// One substep: the stages, in order.
     pub(super) fn substep(&mut self) -> Result<(), SolverError> {
+        self.stepped += (self.parts.particles.len() - self.parts.particles.asleep()) as u64;
         for index in 0..self.stages.len() {
             let stage = self.stages[index];
-            let mut timings = std::mem::take(&mut self.timings);
-            let done = timings.time(stage, || self.run(stage));
-            self.timings = timings;
-            done?;
+            self.run_timed(stage)?;
         }
         Ok(())
+    }
+
+    pub(super) fn run_timed(&mut self, stage: Stage) -> Result<(), SolverError> {
+        let mut timings = std::mem::take(&mut self.timings);
+        let done = timings.time(stage, || self.run(stage));
+        self.timings = timings;
+        done
     }
 
     fn run(&mut self, stage: Stage) -> Result<(), SolverError> {
@@ -40,6 +45,7 @@ impl World {
             Stage::FinishGroups => self.finish_groups(),
             Stage::Effects => self.apply_effects(),
             Stage::AdvectSmoke => self.advect_smoke(),
+            Stage::Sleep => self.decide_sleep(),
         }
         Ok(())
     }
@@ -66,6 +72,9 @@ impl World {
         let Some(rigid) = &mut parts.rigid else { return };
         rigid.predict(self.clock.dt, self.clock.time, wide(parts.gravity));
         rigid.iterate_contacts();
+        self.wake_around_bodies();
+        let parts = &mut self.parts;
+        let Some(rigid) = &mut parts.rigid else { return };
         rigid.place_samples(&mut parts.particles, &self.rows);
     }
 
@@ -125,8 +134,8 @@ impl World {
 
     fn reset_corrections(&mut self) {
         let particles = &self.parts.particles;
-        let samples = if self.parts.rigid.is_some() { particles.dense() } else { 0 };
-        self.corrections.reset(particles.len(), samples);
+        let samples = if self.parts.rigid.is_some() { particles.listed() } else { 0 };
+        self.corrections.reset(particles.len(), particles.listed_bands(), samples);
     }
 
     fn take_up_corrections(&mut self) {
@@ -154,7 +163,9 @@ impl World {
             let square = velocities[row].length_squared();
             if square.is_nan() { Real::INFINITY } else { square }
         };
-        let largest = parts.parallelism.max(velocities.len(), square).max(0.0);
+        let [awake, loose] = parts.particles.bands();
+        let of_loose = parts.parallelism.max(loose.len(), |row| square(loose.start + row));
+        let largest = parts.parallelism.max(awake.len(), square).max(of_loose).max(0.0);
         self.clock.speed = f64::from(largest).sqrt();
         let limit = ABSURD_SPEED * parts.spacing / parts.frame_time;
         if self.clock.speed < limit {
@@ -190,7 +201,7 @@ impl World {
         let mut effects = std::mem::take(&mut self.parts.effects);
         for effect in &mut effects {
             let temperatures = !self.parts.particles.temperature.is_empty();
-            self.changes.reset(self.parts.particles.dense(), temperatures);
+            self.changes.reset(self.parts.particles.listed(), temperatures);
             effect.apply(World::now(&self.parts, &self.rows, &self.clock), &mut self.changes);
             self.take_up_changes();
         }
@@ -198,15 +209,15 @@ impl World {
     }
 
     fn take_up_changes(&mut self) {
-        let dense = self.parts.particles.dense();
+        let awake = self.parts.particles.awake();
         let particles = &mut self.parts.particles;
         let (changes, inverse_masses) = (&self.changes, &particles.inverse_mass);
-        self.parts.parallelism.update(&mut particles.velocity[..dense], |row, velocity| {
+        self.parts.parallelism.update(&mut particles.velocity[..awake], |row, velocity| {
             if inverse_masses[row] > 0.0 {
                 *velocity += changes.velocity[row];
             }
         });
-        let warmed = changes.temperature.len();
+        let warmed = changes.temperature.len().min(awake);
         self.parts.parallelism.update(&mut particles.temperature[..warmed], |row, temperature| {
             if inverse_masses[row] > 0.0 {
                 *temperature += changes.temperature[row];

@@ -17,6 +17,7 @@ use crate::particles::Particles;
 use crate::phase::Phase;
 use crate::rigid::RigidBodies;
 use crate::rows::RowIndex;
+use crate::sleep::LiquidSleep;
 use crate::sources::{EmitterSystem, RemovalRules};
 use crate::walls::Walls;
 
@@ -34,6 +35,7 @@ pub(crate) struct Parts {
     pub rigid: Option<RigidBodies>,
     pub emitters: Option<EmitterSystem>,
     pub removal: Option<RemovalRules>,
+    pub sleep: Option<LiquidSleep>,
     pub substeps: SubstepRule,
     pub iterations: u32,
     /// Violation of every group at which the iteration stops.
@@ -110,8 +112,12 @@ pub(crate) struct World {
     pub(super) choice: Choice,
     /// Iterations of the frame so far.
     pub(super) iterated: u32,
+    /// Rows stepped in the frame so far, all substeps together.
+    pub(super) stepped: u64,
     removed: Vec<u32>,
     pub(super) needs_rows: bool,
+    /// Whether a hook saw the running substep.
+    pub(super) hooked: bool,
 }
 
 impl World {
@@ -129,8 +135,10 @@ impl World {
             velocities: Vec::new(),
             choice: Choice::default(),
             iterated: 0,
+            stepped: 0,
             removed: Vec::new(),
             needs_rows: false,
+            hooked: false,
         };
         world.plan();
         world
@@ -166,6 +174,9 @@ impl World {
     pub fn population_changed(&mut self) {
         self.clock.generation += 1;
         self.parts.neighbors.invalidate();
+        if let Some(sleep) = &mut self.parts.sleep {
+            sleep.forget();
+        }
         self.index_rows();
     }
 
@@ -184,10 +195,14 @@ impl World {
         let mut removed = 0;
         if self.clock.done == 0 {
             removed = self.remove();
-            self.iterated = 0;
-            self.clock.substeps = self.choose_substeps();
-            self.clock.pressure_limit = self.pressure_limit();
-            self.clock.dt = self.parts.frame_time / f64::from(self.clock.substeps);
+            (self.iterated, self.stepped) = (0, 0);
+            if !self.sleeps() {
+                let before = self.clock.dt;
+                self.clock.substeps = self.choose_substeps();
+                self.clock.pressure_limit = self.pressure_limit();
+                self.clock.dt = self.parts.frame_time / f64::from(self.clock.substeps);
+                self.keep_pressure_asleep(before);
+            }
         }
         Begun { removed, ids: self.parts.particles.ids_given(), builds: self.parts.neighbors.builds() }
     }
@@ -201,6 +216,7 @@ impl World {
 
     /// The stages of the substep.
     pub fn finish_substep(&mut self) -> Result<(), SolverError> {
+        self.wake_what_hooks_moved();
         self.substep()?;
         self.clock.step += 1;
         self.clock.done += 1;
@@ -209,6 +225,7 @@ impl World {
 
     /// Sets the clock to the end of the frame.
     pub fn end_frame(&mut self, begun: Begun) -> FrameReport {
+        self.fall_asleep();
         if let Some(rigid) = &mut self.parts.rigid {
             rigid.finish_frame(self.parts.frame_time);
         }
@@ -221,6 +238,7 @@ impl World {
             list_builds: self.clock.list_builds,
             emitted: u64::from(self.parts.particles.ids_given() - begun.ids),
             removed: begun.removed,
+            rows_stepped: self.stepped,
         }
     }
 
@@ -228,6 +246,9 @@ impl World {
     pub fn restore_list(&mut self, list: &SavedList) {
         self.measured = OnceLock::new();
         self.parts.neighbors.restore(&self.parts.particles, list, self.parts.parallelism);
+        if let Some(sleep) = &mut self.parts.sleep {
+            sleep.forget();
+        }
         self.index_rows();
     }
 
@@ -278,8 +299,10 @@ impl World {
         if self.removed.is_empty() {
             return 0;
         }
+        let places = self.places(&self.removed);
         self.parts.particles.remove_rows(&self.removed);
         self.population_changed();
+        self.wake_near(&places);
         self.removed.len() as u64
     }
 

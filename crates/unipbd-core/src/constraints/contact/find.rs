@@ -45,11 +45,20 @@ pub(super) struct Finder {
     candidates: Vec<Contact>,
     /// Contacts between sleeping bodies, kept until they wake.
     frozen: Vec<Contact>,
-    found: Vec<Vec<Contact>>,
+    /// What each task of the narrow phase found.
+    #[serde(skip)]
+    found: Vec<Found>,
     /// Twice the distance each body can go in the substep on its own [m].
     own_reach: Vec<f64>,
     /// The same for it or any body near it, which may hit it.
     reach: Vec<f64>,
+}
+
+/// Room for what one task finds.
+#[derive(Clone, Default)]
+struct Found {
+    touches: Vec<Touch>,
+    contacts: Vec<Contact>,
 }
 
 impl Finder {
@@ -142,7 +151,7 @@ impl Finder {
             2.0 * (speed + gravity * dt) * dt
         }));
         let pairs = self.active.iter().map(|&index| &self.pairs[index as usize]);
-        self.reach = spread_reach(&self.own_reach, &self.pieces, pairs.map(|pair| (pair.a, pair.b)));
+        spread_reach(&self.own_reach, &self.pieces, pairs.map(|pair| (pair.a, pair.b)), &mut self.reach);
     }
 
     /// Whether no piece can leave the box that pairs were sought with.
@@ -160,7 +169,8 @@ impl Finder {
     fn pair_up(&mut self, bodies: &Bodies) {
         let mut found = self.seek_pairs(bodies);
         // Bodies near a fast one move as far as it does, once hit: give them the same room.
-        let spread = spread_reach(&self.own_reach, &self.pieces, found.iter().copied());
+        let mut spread = Vec::new();
+        spread_reach(&self.own_reach, &self.pieces, found.iter().copied(), &mut spread);
         let lacking = (0..bodies.len()).any(|id| spread[id] > 2.0 * self.reach[id] + 0.01 * bodies.sizes[id]);
         self.reach = spread;
         if lacking {
@@ -215,24 +225,23 @@ impl Finder {
     fn collide(&mut self, bodies: &Bodies) {
         let mut contacts = std::mem::take(&mut self.candidates);
         contacts.clear();
+        let mut found = std::mem::take(&mut self.found);
+        found.resize_with(found.len().max(self.active.len().div_ceil(CHUNK)), Found::default);
+        let seek = |(found, pairs): (&mut Found, &[u32])| {
+            found.contacts.clear();
+            pairs.iter().for_each(|&index| self.collide_pair(index, bodies, found));
+        };
         if self.active.len() < PARALLEL_FROM {
-            let mut touches = Vec::new();
-            self.active.iter().for_each(|&index| self.collide_pair(index, bodies, &mut touches, &mut contacts));
+            found.iter_mut().zip(self.active.chunks(CHUNK)).for_each(seek);
         } else {
-            let mut found = std::mem::take(&mut self.found);
-            found.resize_with(self.active.len().div_ceil(CHUNK), Vec::new);
-            found.par_iter_mut().zip(self.active.par_chunks(CHUNK)).for_each(|(found, pairs)| {
-                let mut touches = Vec::new();
-                found.clear();
-                pairs.iter().for_each(|&index| self.collide_pair(index, bodies, &mut touches, found));
-            });
-            found.iter_mut().for_each(|found| contacts.append(found));
-            self.found = found;
+            found.par_iter_mut().zip(self.active.par_chunks(CHUNK)).for_each(seek);
         }
-        self.candidates = contacts;
+        found.iter_mut().for_each(|found| contacts.append(&mut found.contacts));
+        (self.found, self.candidates) = (found, contacts);
     }
 
-    fn collide_pair(&self, index: u32, bodies: &Bodies, touches: &mut Vec<Touch>, contacts: &mut Vec<Contact>) {
+    fn collide_pair(&self, index: u32, bodies: &Bodies, found: &mut Found) {
+        let Found { touches, contacts } = found;
         let pair = &self.pairs[index as usize];
         let (a, b) = (body_of(&self.pieces, pair.a), body_of(&self.pieces, pair.b));
         let margin = entry(&self.reach, a) + entry(&self.reach, b) + pair.near;
@@ -296,16 +305,16 @@ fn scale_impulses(contact: &mut Contact, factor: f64) {
     }
 }
 
-/// Each body's reach, or that of a faster one it is paired with.
-fn spread_reach(own: &[f64], pieces: &Pieces, pairs: impl Iterator<Item = (u32, u32)>) -> Vec<f64> {
-    let mut reach = own.to_vec();
+/// Fills `reach` with each body's own, or that of a faster one it is paired with.
+fn spread_reach(own: &[f64], pieces: &Pieces, pairs: impl Iterator<Item = (u32, u32)>, reach: &mut Vec<f64>) {
+    reach.clear();
+    reach.extend_from_slice(own);
     for (a, b) in pairs.map(|(a, b)| (body_of(pieces, a), body_of(pieces, b))) {
         if a != NONE && b != NONE {
             reach[a as usize] = reach[a as usize].max(own[b as usize]);
             reach[b as usize] = reach[b as usize].max(own[a as usize]);
         }
     }
-    reach
 }
 
 /// The body a piece belongs to; half-planes and walls have none.

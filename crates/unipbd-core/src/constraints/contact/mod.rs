@@ -309,6 +309,21 @@ impl Contacts {
         }
     }
 
+    /// Wakes a body with its island.
+    pub(crate) fn wake(&mut self, bodies: &mut Bodies, body: u32) {
+        self.islands.resize(bodies.len());
+        self.islands.wake_island(bodies, body as usize);
+    }
+
+    /// Puts bodies to sleep, those that touch each other as one island.
+    pub(crate) fn lay_down(&mut self, bodies: &mut Bodies, tired: &[u32]) {
+        if !tired.is_empty() {
+            self.islands.resize(bodies.len());
+            self.islands.lay_down(bodies, tired, self.finder.contacts(), &self.joints);
+            self.finder.freeze(bodies, self.dt);
+        }
+    }
+
     /// Force of the bodies on each wall over the last frame, mean [N]; in the order of the walls.
     pub fn wall_forces(&self) -> &[Vector64] {
         &self.wall_forces

@@ -29,6 +29,9 @@ pub(super) struct Islands {
     /// The island each sleeping body belongs to.
     island: Vec<u32>,
     parents: Vec<u32>,
+    /// The shortest rest time of each island, at its root.
+    #[serde(skip)]
+    least: Vec<f64>,
 }
 
 impl Islands {
@@ -70,7 +73,7 @@ impl Islands {
         woken
     }
 
-    fn wake_island(&mut self, bodies: &mut Bodies, id: usize) {
+    pub fn wake_island(&mut self, bodies: &mut Bodies, id: usize) {
         let island = self.island[id];
         for other in 0..bodies.len() {
             if bodies.asleep[other] && self.island[other] == island {
@@ -93,6 +96,20 @@ impl Islands {
         if !self.rest.iter().zip(&bodies.asleep).any(|(&rest, &asleep)| rest >= settings.delay && !asleep) {
             return false;
         }
+        self.unite_touching(bodies, contacts, joints);
+        self.put_to_rest(bodies, settings)
+    }
+
+    /// Puts bodies to sleep at once: the fluid that carries them does.
+    pub fn lay_down(&mut self, bodies: &mut Bodies, tired: &[u32], contacts: &[Contact], joints: &[Linked]) {
+        self.unite_touching(bodies, contacts, joints);
+        for &body in tired {
+            bodies.fall_asleep(body as usize);
+            self.island[body as usize] = self.root(body);
+        }
+    }
+
+    fn unite_touching(&mut self, bodies: &Bodies, contacts: &[Contact], joints: &[Linked]) {
         self.parents.clear();
         self.parents.extend(0..bodies.len() as u32);
         let touching =
@@ -100,7 +117,6 @@ impl Islands {
         for (a, b) in touching.chain(joints.iter().map(Linked::bodies)).filter(|&(_, b)| b != NONE) {
             self.unite(bodies, a, b);
         }
-        self.put_to_rest(bodies, settings)
     }
 
     fn measure_rest(&mut self, bodies: &Bodies, settings: &SleepSettings, frame_time: f64) {
@@ -136,14 +152,16 @@ impl Islands {
     }
 
     fn put_to_rest(&mut self, bodies: &mut Bodies, settings: &SleepSettings) -> bool {
-        let roots: Vec<u32> = (0..bodies.len() as u32).map(|id| self.root(id)).collect();
-        let mut least = vec![f64::INFINITY; bodies.len()];
-        for (id, &root) in roots.iter().enumerate() {
-            least[root as usize] = least[root as usize].min(self.rest[id]);
+        self.least.clear();
+        self.least.resize(bodies.len(), f64::INFINITY);
+        for id in 0..bodies.len() {
+            let root = self.root(id as u32) as usize;
+            self.least[root] = self.least[root].min(self.rest[id]);
         }
         let mut any = false;
-        for (id, &root) in roots.iter().enumerate() {
-            if least[root as usize] >= settings.delay && bodies.is_dynamic(id) && !bodies.asleep[id] {
+        for id in 0..bodies.len() {
+            let root = self.root(id as u32);
+            if self.least[root as usize] >= settings.delay && bodies.is_dynamic(id) && !bodies.asleep[id] {
                 bodies.fall_asleep(id);
                 self.island[id] = root;
                 any = true;

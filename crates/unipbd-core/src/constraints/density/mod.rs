@@ -71,7 +71,6 @@ impl Density {
         self.sums.resize(rows);
         self.error.resize(rows, 0.0);
         self.multiplier.resize(rows, 0.0);
-        self.step.resize(rows, 0.0);
         self.wall_gradient.resize(rows, Vector::ZERO);
     }
 
@@ -115,8 +114,11 @@ impl ConstraintGroup for Density {
     }
 
     fn begin_substep(&mut self, now: Substep<'_>) {
-        self.resize(now.particles.dense());
+        self.resize(now.particles.listed());
         self.multiplier.fill(0.0);
+        self.step.resize(now.particles.dense(), 0.0);
+        // Nobody who moves is near the rows behind the listed ones.
+        self.step[now.particles.listed()..].fill(0.0);
     }
 
     fn project(&mut self, now: Substep<'_>, out: &mut Corrections) {

@@ -53,6 +53,7 @@ impl Density {
         let (inverse_mass, material_of) = (now.particles.inverse_masses(), now.particles.materials());
         let (error, wall, step, multiplier) =
             (&mut self.error, &mut self.wall_gradient, &mut self.step, &mut self.multiplier);
+        let step = &mut step[..error.len()];
         now.parallelism.chunks4(error, wall, step, multiplier, |first, error, wall, step, multiplier| {
             for k in 0..error.len() {
                 let i = first + k;
@@ -79,7 +80,7 @@ impl Density {
         }
         let (sums, steps, walls) = (&self.sums.gradient, &self.step, &self.wall_gradient);
         let (volume, inverse_masses) = (self.settings.volume, now.particles.inverse_masses());
-        let rows = now.particles.dense();
+        let rows = now.particles.listed();
         // The pressures that are believed accelerate to this speed at most (Bernoulli): what a step too
         // long for them makes of a crushed heap ends there.
         let farthest = 2.0 * now.pressure_limit * now.dt * now.dt;
@@ -111,7 +112,7 @@ impl Density {
         simd::repulsion(now.pairs(), reach, positions, strengths, &mut self.sums.gradient);
         let (sums, strength) = (&self.sums.gradient, &self.strength);
         let inverse_masses = now.particles.inverse_masses();
-        now.parallelism.update(&mut out.displacements_mut()[..strength.len()], |i, displacement| {
+        now.parallelism.update(&mut out.displacements_mut()[..sums.len()], |i, displacement| {
             *displacement += sums[i] * (strength[i] * inverse_masses[i]);
         });
     }
@@ -123,7 +124,7 @@ impl Density {
             return;
         }
         let (inverse_masses, phases) = (now.particles.inverse_masses(), now.particles.phases());
-        now.parallelism.fill(&mut self.step, |i| match phases[i] {
+        now.parallelism.fill(&mut self.step[..now.particles.listed()], |i| match phases[i] {
             Phase::Liquid if inverse_masses[i] > 0.0 => 0.5 * pressure / inverse_masses[i],
             _ => 0.0,
         });
@@ -136,7 +137,7 @@ impl Density {
             Some(other) => simd::correction(now.pairs(), Tensile::new(other, reference), positions, &self.step, sums),
         }
         let (sums, volume) = (&self.sums.gradient, self.settings.volume);
-        now.parallelism.update(&mut out.displacements_mut()[..now.particles.dense()], |i, displacement| {
+        now.parallelism.update(&mut out.displacements_mut()[..now.particles.listed()], |i, displacement| {
             *displacement -= sums[i] * (volume * inverse_masses[i]);
         });
     }

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use super::checker::{Allowed, Checker};
 use crate::phase::{MaterialIndex, Phase};
-use crate::scene::{KeyPath, MaterialRef, Scene, nearest};
+use crate::scene::{KeyPath, Liquid, MaterialRef, Scene, nearest};
 
 const VISCOSITY_HINT: &str = "the fraction of velocity differences smoothed per substep";
 const NU_HINT: &str = "in m^2/s, such as 1e-6 for water; 0 is none";
@@ -20,6 +20,9 @@ pub(super) fn check(checker: &mut Checker) {
         checker.range(path.then("kinematic_viscosity"), nu, Allowed::NotNegative, NU_HINT);
         checker.range(path.then("cohesion"), liquid.cohesion, Allowed::NotNegative, "an acceleration in m/s^2");
         checker.range(path.then("quadratic_drag"), liquid.quadratic_drag, Allowed::NotNegative, QUADRATIC_HINT);
+        if checker.scene.solver.sleep {
+            check_sleep(checker, &path, liquid);
+        }
     }
     check_gases(checker);
     for (index, smoke) in checker.scene.smoke.iter().enumerate() {
@@ -36,6 +39,15 @@ pub(super) fn check(checker: &mut Checker) {
     let (count, most) = (checker.scene.materials().count(), usize::from(MaterialIndex::MAX));
     if count > most {
         checker.problems.add(KeyPath::default(), format!("has {count} materials, at most {most} are possible"));
+    }
+}
+
+/// What acts on a liquid at rest must act the same as long as it sleeps.
+fn check_sleep(checker: &mut Checker, path: &KeyPath, liquid: &Liquid) {
+    for (key, value) in [("cohesion", liquid.cohesion), ("quadratic_drag", liquid.quadratic_drag)] {
+        if value > 0.0 {
+            checker.problem(path.then(key), "is not possible where liquids sleep", "leave out solver.sleep");
+        }
     }
 }
 

@@ -54,10 +54,10 @@ impl<'a> Pairs<'a> {
     fn run_chunk<P: AnyForm<N>, const N: usize>(&self, pass: &P, first: usize, rows: usize, sink: &mut impl Sink<N>) {
         #[cfg(not(feature = "f64"))]
         if self.level != Level::Scalar {
-            assert!(pass.shortest_column() >= self.rows() && first + rows <= self.rows());
+            assert!(pass.shortest_column() >= self.list.reach() && first + rows <= self.rows());
             let chunk = &self.list.chunks()[first / CHUNK_ROWS];
-            // SAFETY: the list takes its entries from row numbers below `rows()`, checked when it was
-            // built, and every column of the pass has at least that many rows.
+            // SAFETY: the list takes its entries from row numbers below `reach()`, checked when it was
+            // built, and its own rows are below that too; every column of the pass has as many rows.
             unsafe { run::run(self.level, pass, chunk, first, rows, sink) };
             return;
         }

@@ -1,0 +1,65 @@
+"""SPlisHSPlasH in two dimensions on one thread: DFSPH, or its PBF."""
+import json
+import os
+import sys
+import tempfile
+import time
+
+dx, width, height, tank_width, tank_height, seconds, look = map(float, sys.argv[1:8])
+method = sys.argv[8]
+os.environ["OMP_NUM_THREADS"] = "1"
+import numpy as np  # noqa: E402
+import pysplishsplash as sph  # noqa: E402
+
+columns, rows = round(width / dx), round(height / dx)
+dt = min(0.002, 0.1 * dx)
+folder = tempfile.mkdtemp()
+box = os.path.join(folder, "box.obj")
+with open(box, "w") as out:
+    corners = [(x, y, z) for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)]
+    out.writelines(f"v {x} {y} {z}\n" for x, y, z in corners)
+    quads = [(1, 2, 4, 3), (5, 7, 8, 6), (1, 5, 6, 2), (3, 4, 8, 7), (1, 3, 7, 5), (2, 6, 8, 4)]
+    out.writelines(f"f {a} {b} {c}\nf {a} {c} {d}\n" for a, b, c, d in quads)
+scene = {
+    "Configuration": {
+        "particleRadius": dx / 2, "sim2D": True, "numberOfStepsPerRenderUpdate": 1, "density0": 1000,
+        "simulationMethod": 4 if method == "dfsph" else 2, "gravitation": [0, -9.81, 0], "cflMethod": 0,
+        "timeStepSize": dt, "maxIterations": 100 if method == "dfsph" else 5, "maxError": 0.1,
+        "stopAt": seconds, "pause": False, "boundaryHandlingMethod": 0,
+    },
+    "Materials": [{"id": "Fluid"}],
+    "RigidBodies": [{
+        "geometryFile": box, "translation": [tank_width / 2, tank_height / 2, 0],
+        "scale": [tank_width + dx, tank_height + dx, 1], "isDynamic": False, "isWall": True,
+        "mapInvert": True, "samplingMode": 1,
+    }],
+    "FluidBlocks": [{
+        "denseMode": 0, "start": [0, 0, -1],
+        "end": [(columns + 0.6) * dx, (rows + 0.6) * dx, 1], "translation": [-dx / 2, -dx / 2, 0], "scale": [1, 1, 1],
+    }],
+}
+path = os.path.join(folder, "scene.json")
+with open(path, "w") as out:
+    json.dump(scene, out)
+base = sph.Exec.SimulatorBase()
+base.init(useGui=False, sceneFile=path, stopAt=seconds, outputDir=folder)
+base.initSimulation()
+looks, state = [], {"time": 0.0, "begin": time.process_time(), "steps": 0, "next": look}
+
+
+def after_step():
+    state["time"] += time.process_time() - state["begin"]
+    state["steps"] += 1
+    now = sph.TimeManager.getCurrent().getTime()
+    if now >= state["next"] - 1e-9:
+        state["next"] += look
+        model = sph.Simulation.getCurrent().getFluidModel(0)
+        buffer = np.array(model.getFieldBuffer("position"), copy=True)
+        looks.append(buffer[: model.numActiveParticles(), :2].tolist())
+    state["begin"] = time.process_time()
+
+
+base.setTimeStepCB(after_step)
+base.runSimulation()
+name = "SPlisHSPlasH " + ("DFSPH 0.1 %" if method == "dfsph" else "PBF, 5 iterations")
+print(json.dumps({"solver": name, "time": state["time"], "steps": state["steps"], "looks": looks}))

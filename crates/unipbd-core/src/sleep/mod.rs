@@ -1,0 +1,275 @@
+//! Liquids at rest: blocks of liquid that have hardly moved for a while are held where they are until
+//! something near them moves.
+//!
+//! The plane is cut into square blocks. Connected blocks of liquid, and of bodies in it, fall asleep
+//! together once their particles have moved by less than [`STILL`] spacings in the mean for [`DELAY`]
+//! seconds, and in no block by more than [`ROUGH`]. A sleeping block wakes when one around it is rough:
+//! motion spreads a block per frame, or as far as it can get in one. Sleeping blocks next to others that are awake have a pressure all the same, so that nobody
+//! is pushed by what no longer answers.
+//!
+//! Everything follows from two columns: where a particle came to rest, and how long ago. Blocks are
+//! made anew in each frame, from the rows that are awake.
+
+mod blocks;
+
+use crate::math::{Real, Vector, real};
+use crate::neighbors::Periodic;
+use crate::particles::Particles;
+use crate::phase::Phase;
+use crate::scene::Scene;
+use blocks::{Blocks, Key, Layout};
+use std::ops::Range;
+
+/// Side of a block in spacings.
+const BLOCK: f64 = 8.0;
+/// Mean displacement, in spacings, up to which connected blocks are at rest...
+const STILL: f64 = 0.05;
+/// ...that of each of them...
+const ROUGH: f64 = 0.1;
+/// ...and that of any particle.
+const FAR: f64 = 1.0;
+/// How long they must have been at rest [s].
+const DELAY: f64 = 0.5;
+/// What moves is felt at most this many blocks away.
+const FARTHEST: i32 = 16;
+
+/// Puts liquid to sleep and wakes it.
+pub(crate) struct LiquidSleep {
+    layout: Layout,
+    still: f64,
+    rough: f64,
+    far: Real,
+    frame_time: Real,
+    blocks: Blocks,
+    /// The blocks of sleeping rows, sorted, and those of them that lie near others that are awake.
+    sleeping: Vec<Key>,
+    border: Vec<Key>,
+    last_border: Vec<Key>,
+    /// Whether these are those of the rows.
+    known: bool,
+    /// Blocks to be woken, and to be put to sleep.
+    waking: Vec<Key>,
+    tiring: Vec<Key>,
+    order: Vec<u32>,
+}
+
+impl LiquidSleep {
+    /// The rules of a scene, or nothing where it does not ask for sleep.
+    pub fn new(scene: &Scene, periodic: Periodic) -> Option<Self> {
+        let spacings = |count: f64| real(count * scene.spacing);
+        scene.solver.sleep.then(|| LiquidSleep {
+            layout: Layout::new(spacings(BLOCK), periodic),
+            still: STILL * scene.spacing,
+            rough: ROUGH * scene.spacing,
+            far: spacings(FAR),
+            frame_time: real(1.0 / scene.fps),
+            blocks: Blocks::default(),
+            sleeping: Vec::new(),
+            border: Vec::new(),
+            last_border: Vec::new(),
+            known: false,
+            waking: Vec::new(),
+            tiring: Vec::new(),
+            order: Vec::new(),
+        })
+    }
+
+    /// The rows were changed by somebody else.
+    pub fn forget(&mut self) {
+        self.known = false;
+    }
+
+    /// Ends a frame: decides who wakes and who falls asleep. `may` says whether the sample of this id may.
+    pub fn decide(&mut self, particles: &mut Particles, may: impl Fn(u32) -> bool) {
+        self.know(particles);
+        self.measure(particles, may);
+        self.note_rest(particles);
+        self.find_waking();
+        self.find_tiring();
+    }
+
+    /// Decides that what sleeps near some points wakes, and nothing else.
+    pub fn wake_near(&mut self, points: &[Vector], particles: &Particles) {
+        self.know(particles);
+        self.blocks.clear();
+        particles.position[..particles.awake()].iter().for_each(|&position| {
+            self.blocks.at(self.layout.key(position));
+        });
+        self.tiring.clear();
+        self.waking.clear();
+        for &point in points {
+            self.layout.around(self.layout.key(point), 1, |key| keep_if(&self.sleeping, key, &mut self.waking));
+        }
+        tidy(&mut self.waking);
+    }
+
+    /// Whether a sleeping row here is about to wake.
+    pub fn is_waking(&self, point: Vector) -> bool {
+        holds(&self.waking, self.layout.key(point))
+    }
+
+    /// Lets what sleeps in the block of a point wake too.
+    pub fn wake_also(&mut self, point: Vector) {
+        let key = self.layout.key(point);
+        if let (true, Err(place)) = (holds(&self.sleeping, key), self.waking.binary_search(&key)) {
+            self.waking.insert(place, key);
+        }
+    }
+
+    /// Finds the blocks of the sleeping rows.
+    fn know(&mut self, particles: &Particles) {
+        if self.known {
+            return;
+        }
+        let blocks = |rows: Range<usize>, keys: &mut Vec<Key>| {
+            keys.clear();
+            keys.extend(particles.position[rows].iter().map(|&position| self.layout.key(position)));
+            tidy(keys);
+        };
+        blocks(particles.awake()..particles.dense(), &mut self.sleeping);
+        blocks(particles.awake()..particles.listed(), &mut self.border);
+        self.known = true;
+    }
+
+    /// How the rows that are awake have moved, block by block.
+    fn measure(&mut self, particles: &Particles, may: impl Fn(u32) -> bool) {
+        self.blocks.clear();
+        for row in 0..particles.awake() {
+            let position = particles.position[row];
+            let moved = self.layout.periodic.min_image(position - particles.anchor[row]).length();
+            let block = self.blocks.at(self.layout.key(position));
+            block.count += 1;
+            block.moved += f64::from(moved);
+            block.farthest = block.farthest.max(moved);
+            block.rest = block.rest.min(particles.rest[row]);
+            block.speed = block.speed.max(particles.velocity[row].length());
+            block.sleepy &= match particles.phase[row] {
+                Phase::Liquid => particles.inverse_mass[row] > 0.0,
+                phase => phase == Phase::Rigid && may(particles.id[row]),
+            };
+        }
+        for (_, block) in self.blocks.all_mut() {
+            block.rough = block.mean() > self.rough || block.farthest > self.far;
+        }
+        self.blocks.connect(&self.layout);
+    }
+
+    /// In a rough block everybody begins anew, and so does all that is connected and not still.
+    fn note_rest(&mut self, particles: &mut Particles) {
+        for row in 0..particles.awake() {
+            let position = particles.position[row];
+            let (block, whole) = self.blocks.with_whole(self.layout.key(position));
+            if block.rough || whole.mean() > self.still {
+                (particles.anchor[row], particles.rest[row]) = (position, 0.0);
+            } else {
+                particles.rest[row] += self.frame_time;
+            }
+        }
+    }
+
+    /// What sleeps near a rough block wakes: as far from it as something fast gets in a frame.
+    fn find_waking(&mut self) {
+        self.waking.clear();
+        if self.sleeping.is_empty() {
+            return;
+        }
+        for &(center, block) in self.blocks.all() {
+            if block.rough {
+                let reach = 1 + (block.speed * self.frame_time / self.layout.side()).min(FARTHEST as Real) as i32;
+                self.layout.around(center, reach, |key| keep_if(&self.sleeping, key, &mut self.waking));
+            }
+        }
+        tidy(&mut self.waking);
+    }
+
+    /// Connected blocks that have been calm for long fall asleep.
+    fn find_tiring(&mut self) {
+        self.tiring.clear();
+        for (place, &(key, _)) in self.blocks.all().iter().enumerate() {
+            let whole = self.blocks.whole(place);
+            let calm = whole.sleepy && !whole.rough && whole.mean() <= self.still;
+            if calm && whole.rest + self.frame_time >= DELAY as Real {
+                self.tiring.push(key);
+            }
+        }
+        self.tiring.sort_unstable();
+    }
+
+    /// The sleeping blocks around those that are awake.
+    fn find_border(&mut self) {
+        self.sleeping.retain(|&key| !holds(&self.waking, key));
+        self.sleeping.extend_from_slice(&self.tiring);
+        tidy(&mut self.sleeping);
+        self.border.clear();
+        let (layout, sleeping, border) = (&self.layout, &self.sleeping, &mut self.border);
+        let awake = self.blocks.all().iter().map(|&(key, _)| key).filter(|&key| !holds(&self.tiring, key));
+        for center in awake.chain(self.waking.iter().copied()) {
+            layout.around(center, 1, |key| keep_if(sleeping, key, border));
+        }
+        tidy(border);
+    }
+
+    /// The dense rows in their new order, if it is another.
+    pub fn plan(&mut self, particles: &Particles) -> Option<Plan<'_>> {
+        std::mem::swap(&mut self.border, &mut self.last_border);
+        self.find_border();
+        if self.waking.is_empty() && self.tiring.is_empty() && self.border == self.last_border {
+            return None;
+        }
+        let (awake, dense) = (particles.awake(), particles.dense());
+        let within =
+            |keys: &[Key], row: u32| !keys.is_empty() && holds(keys, self.layout.key(particles.position[row as usize]));
+        let (now_awake, now_asleep) = (0..awake as u32, awake as u32..dense as u32);
+        self.order.clear();
+        self.order.extend(now_awake.clone().filter(|&row| !within(&self.tiring, row)));
+        let stayed = self.order.len();
+        self.order.extend(now_asleep.clone().filter(|&row| within(&self.waking, row)));
+        let awake = self.order.len();
+        let sleeping = now_asleep.filter(|&row| !within(&self.waking, row));
+        let sleeping = sleeping.chain(now_awake.filter(|&row| within(&self.tiring, row)));
+        self.order.extend(sleeping.clone().filter(|&row| within(&self.border, row)));
+        let border = self.order.len() - awake;
+        self.order.extend(sleeping.filter(|&row| !within(&self.border, row)));
+        Some(Plan { order: &self.order, woken: stayed..awake, awake, border })
+    }
+}
+
+/// Which rows sleep from now on.
+pub(crate) struct Plan<'a> {
+    /// The dense rows in their new order: those awake, those asleep near them, all others.
+    pub order: &'a [u32],
+    /// Number of rows awake.
+    pub awake: usize,
+    /// Number of rows asleep near them.
+    pub border: usize,
+    /// Rows that were asleep before, in the new order.
+    woken: Range<usize>,
+}
+
+impl Plan<'_> {
+    /// Lets sleeping rows lie still, and those that were woken begin anew. Call with the rows in their
+    /// new order.
+    pub fn settle(&self, particles: &mut Particles) {
+        for row in self.woken.clone() {
+            (particles.anchor[row], particles.rest[row]) = (particles.position[row], 0.0);
+        }
+        let sleeping = self.awake..particles.dense();
+        particles.velocity[sleeping.clone()].fill(Vector::ZERO);
+        particles.displacement[sleeping].fill(Vector::ZERO);
+    }
+}
+
+fn tidy(keys: &mut Vec<Key>) {
+    keys.sort_unstable();
+    keys.dedup();
+}
+
+fn holds(keys: &[Key], key: Key) -> bool {
+    keys.binary_search(&key).is_ok()
+}
+
+fn keep_if(sleeping: &[Key], key: Key, kept: &mut Vec<Key>) {
+    if holds(sleeping, key) {
+        kept.push(key);
+    }
+}
