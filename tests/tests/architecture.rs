@@ -31,7 +31,7 @@ const MUTUAL: [(&str, &str); 4] =
 const SIDEWAYS: [(&str, &str); 1] = [("build", "edit")];
 
 /// Kinds of constraint: a file or folder each, and none names another.
-const CONSTRAINTS: [&str; 3] = ["batch", "contact", "density"];
+const CONSTRAINTS: [&str; 4] = ["batch", "contact", "density", "mass_density"];
 
 fn core() -> PathBuf {
     repository().join("crates/unipbd-core/src")

@@ -4,7 +4,7 @@ mod bodies;
 mod carve;
 mod waves;
 
-use crate::constraints::{ConstraintGroup, Density, DensitySettings};
+use crate::constraints::{ConstraintGroup, Density, DensitySettings, MassDensity};
 use crate::effects::{
     Cohesion, Conduction, Drag, Effect, Heating, QuadraticDrag, ShearViscosity, SmokeAdvection, Viscosity,
     VorticityConfinement,
@@ -105,7 +105,10 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
 fn groups(scene: &Scene, density: DensitySettings) -> Vec<Box<dyn ConstraintGroup>> {
     let mut groups: Vec<Box<dyn ConstraintGroup>> = Vec::new();
     if scene.materials().any(|material| material.phase().is_fluid()) {
-        groups.push(Box::new(Density::new(density)));
+        groups.push(match &scene.solver.mass_density {
+            None => Box::new(Density::new(density)),
+            Some(description) => Box::new(MassDensity::new(scene, description)),
+        });
     }
     groups
 }
@@ -226,7 +229,7 @@ fn particles(scene: &Scene, seed: u64, optional: OptionalColumns) -> Particles {
 
 fn add_points(points: &Points, scene: &Scene, particles: &mut Particles) {
     let Some((index, material)) = scene.material(&points.material) else { return };
-    let mass = material.density() * scene.spacing * scene.spacing;
+    let mass = material.particle_mass(scene.spacing);
     for (number, &position) in points.positions.iter().enumerate() {
         let velocity = points.velocities.get(number).copied().unwrap_or(points.velocity);
         particles.push(NewParticle {
@@ -244,7 +247,7 @@ impl Filling<'_> {
     fn pour(&self, scene: &Scene, seed: u64, particles: &mut Particles) {
         let Some((index, material)) = scene.material(self.material) else { return };
         let mut rng = Rng::new(seed, self.stream);
-        let mass = material.density() * scene.spacing * scene.spacing;
+        let mass = material.particle_mass(scene.spacing);
         for &point in &self.points {
             let shift = Vector64::new(rng.signed_unit(), rng.signed_unit()) * (self.jitter * scene.spacing);
             particles.push(NewParticle {

@@ -4,4 +4,5 @@ mod coupling;
 mod effects;
 mod files;
 mod interface;
+mod seed;
 mod support;

@@ -9,6 +9,7 @@ mod batch;
 pub mod contact;
 mod corrections;
 mod density;
+mod mass_density;
 mod projection;
 
 use std::ops::BitOr;
@@ -16,6 +17,7 @@ use std::ops::BitOr;
 pub use batch::{Batch, Constraint};
 pub use corrections::Corrections;
 pub use density::{Density, DensityMaterial, DensitySettings};
+pub use mass_density::MassDensity;
 
 use crate::math::{Real, Vector};
 use crate::neighbors::Neighbors;

@@ -11,6 +11,9 @@ pub struct Liquid {
     pub name: String,
     /// Rest density [kg/m^2].
     pub density: f64,
+    /// Mass of a particle; left out, that of a square of the spacing [kg].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub particle_mass: Option<f64>,
     /// XSPH viscosity per substep, 0 to 1: the fraction of velocity differences that is smoothed.
     pub viscosity: f64,
     /// Kinematic viscosity nu; a physical one, beside the cheap smoothing above [m^2/s].
@@ -33,6 +36,7 @@ impl Default for Liquid {
         Liquid {
             name: String::new(),
             density: 1000.0,
+            particle_mass: None,
             viscosity: 0.0,
             kinematic_viscosity: 0.0,
             surface: LiquidSurface::Free,
@@ -65,6 +69,9 @@ pub struct Gas {
     pub name: String,
     /// Rest density [kg/m^2].
     pub density: f64,
+    /// Mass of a particle; left out, that of a square of the spacing [kg].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub particle_mass: Option<f64>,
     /// Acceleration is `gravity_factor` x temperature x gravity; negative lets hot gas rise.
     pub gravity_factor: f64,
     /// Drag rate k towards the environment velocity where the gas is thin [1/s].
@@ -97,6 +104,7 @@ impl Default for Gas {
         Gas {
             name: String::new(),
             density: 1.2,
+            particle_mass: None,
             gravity_factor: -0.3,
             drag: 0.0,
             quadratic_drag: 0.0,
@@ -198,6 +206,16 @@ impl<'a> MaterialRef<'a> {
             MaterialRef::Smoke(_) | MaterialRef::Rigid => 0.0,
             MaterialRef::Solid(solid) => solid.density,
         }
+    }
+
+    /// Mass of one of its particles [kg]; 0 for smoke and bodies.
+    pub fn particle_mass(&self, spacing: f64) -> f64 {
+        let given = match self {
+            MaterialRef::Liquid(liquid) => liquid.particle_mass,
+            MaterialRef::Gas(gas) => gas.particle_mass,
+            _ => None,
+        };
+        given.unwrap_or(self.density() * spacing * spacing)
     }
 
     /// Kinematic viscosity [m^2/s].

@@ -40,7 +40,7 @@ impl RegionInjector {
     /// `None` where the material is unknown, which `Scene::validate` refuses.
     pub fn new(injector: &Injector, scene: &Scene, seed: u64, number: usize) -> Option<Self> {
         let (index, material) = scene.material(&injector.material)?;
-        let mass = material.density() * scene.spacing * scene.spacing;
+        let mass = material.particle_mass(scene.spacing);
         Some(RegionInjector {
             region: injector.region.clone(),
             rate: injector.rate,
