@@ -3,6 +3,8 @@
 mod coupling;
 mod effects;
 mod files;
+mod forces;
 mod interface;
+mod ropes;
 mod seed;
 mod support;

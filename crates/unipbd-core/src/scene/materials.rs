@@ -22,6 +22,9 @@ pub struct Liquid {
     pub surface: LiquidSurface,
     /// Strength of surface tension, the pull of a particle on its neighbour [m/s^2].
     pub cohesion: f64,
+    /// Strength of the pull of walls and bodies: the acceleration of a particle on a flat wall; it ends a
+    /// kernel radius away [m/s^2].
+    pub adhesion: f64,
     /// Drag against the air that grows with the square of the speed [1/m].
     pub quadratic_drag: f64,
     /// Factor on gravity.
@@ -41,6 +44,7 @@ impl Default for Liquid {
             kinematic_viscosity: 0.0,
             surface: LiquidSurface::Free,
             cohesion: 0.0,
+            adhesion: 0.0,
             quadratic_drag: 0.0,
             gravity_factor: 1.0,
             color: None,
@@ -80,6 +84,9 @@ pub struct Gas {
     pub quadratic_drag: f64,
     /// Strength of vorticity confinement, dimensionless (0 is off; above 5 it adds energy).
     pub vorticity: f64,
+    /// Baroclinic turbulence beta, dimensionless: vorticity grows by beta grad(rho/rho0) x g, with
+    /// rho/rho0 = 1 + `gravity_factor` x temperature, and less where the gas is thin.
+    pub baroclinic: f64,
     /// Diffusivity of temperature [m^2/s].
     pub conductivity: f64,
     /// XSPH viscosity per substep, 0 to 1.
@@ -109,6 +116,7 @@ impl Default for Gas {
             drag: 0.0,
             quadratic_drag: 0.0,
             vorticity: 0.0,
+            baroclinic: 0.0,
             conductivity: 0.0,
             viscosity: 0.0,
             kinematic_viscosity: 0.0,

@@ -112,6 +112,10 @@ pub(crate) struct World {
     pub(super) iterated: u32,
     removed: Vec<u32>,
     pub(super) needs_rows: bool,
+    /// Impulses on the measured walls in the frame so far [kg m/s].
+    pub(super) wall_impulses: Vec<Vector64>,
+    /// Mean forces on the measured walls in the last frame [N].
+    pub(super) wall_forces: Vec<Vector64>,
 }
 
 impl World {
@@ -131,9 +135,18 @@ impl World {
             iterated: 0,
             removed: Vec::new(),
             needs_rows: false,
+            wall_impulses: Vec::new(),
+            wall_forces: Vec::new(),
         };
+        world.forget_walls();
+        world.wall_forces.clone_from(&world.wall_impulses);
         world.plan();
         world
+    }
+
+    fn forget_walls(&mut self) {
+        self.wall_impulses.clear();
+        self.wall_impulses.resize(self.parts.walls.measured().len(), Vector64::ZERO);
     }
 
     /// Decides the stages: called when the scene is built or its groups change.
@@ -185,6 +198,7 @@ impl World {
         if self.clock.done == 0 {
             removed = self.remove();
             self.iterated = 0;
+            self.forget_walls();
             self.clock.substeps = self.choose_substeps();
             self.clock.pressure_limit = self.pressure_limit();
             self.clock.dt = self.parts.frame_time / f64::from(self.clock.substeps);
@@ -212,6 +226,8 @@ impl World {
         if let Some(rigid) = &mut self.parts.rigid {
             rigid.finish_frame(self.parts.frame_time);
         }
+        let inverse = 1.0 / self.parts.frame_time;
+        self.wall_forces = self.wall_impulses.iter().map(|impulse| *impulse * inverse).collect();
         self.clock.done = 0;
         self.clock.frame += 1;
         self.clock.time = self.clock.frame as f64 * self.parts.frame_time;

@@ -20,6 +20,7 @@ pub(super) fn check(checker: &mut Checker) {
         let nu = liquid.kinematic_viscosity;
         checker.range(path.then("kinematic_viscosity"), nu, Allowed::NotNegative, NU_HINT);
         checker.range(path.then("cohesion"), liquid.cohesion, Allowed::NotNegative, "an acceleration in m/s^2");
+        checker.range(path.then("adhesion"), liquid.adhesion, Allowed::NotNegative, "an acceleration in m/s^2");
         checker.range(path.then("quadratic_drag"), liquid.quadratic_drag, Allowed::NotNegative, QUADRATIC_HINT);
     }
     check_gases(checker);
