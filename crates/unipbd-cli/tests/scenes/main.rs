@@ -4,6 +4,7 @@ mod coupling;
 mod effects;
 mod files;
 mod forces;
+mod gas;
 mod interface;
 mod ropes;
 mod seed;
