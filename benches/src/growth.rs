@@ -1,7 +1,6 @@
 //! Time of a frame against the number of particles, next to what the original program took.
 
-use std::time::Instant;
-
+use cpu_time::ProcessTime;
 use unipbd_core::scene::{Block, Liquid, LiquidSurface, Preset, Scene, Tank};
 
 use crate::scenes::solver;
@@ -50,14 +49,15 @@ pub fn two_liquids(particles: usize, preset: Preset) -> Scene {
     scene
 }
 
-/// The mean time of a frame after the first, of which at least `frames` are taken.
+/// The mean time of the frames after the first, on one thread. It is the time of the processor: what
+/// else runs on the machine does not count.
 ///
 /// # Panics
 /// Where the run diverges.
-pub fn measure(scene: &Scene, frames: u32, threads: usize) -> Point {
-    let mut solver = solver(scene, threads);
+pub fn measure(scene: &Scene, frames: u32) -> Point {
+    let mut solver = solver(scene, 1);
     solver.step_frame().expect("a frame");
-    let start = Instant::now();
+    let start = ProcessTime::now();
     for _ in 0..frames {
         solver.step_frame().expect("a frame");
     }

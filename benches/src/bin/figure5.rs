@@ -40,10 +40,9 @@ fn main() -> Result<(), Box<dyn Error>> {
 }
 
 fn measured(name: &'static str, what: &'static str, sizes: &[usize], preset: Preset) -> Curve {
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
     let point = |&size: &usize| {
         let frames = (WORK / size.max(1)).clamp(2, 100) as u32;
-        let point = growth::measure(&growth::two_liquids(size, preset), frames, threads);
+        let point = growth::measure(&growth::two_liquids(size, preset), frames);
         eprintln!("{name}: {} particles, {:.3} ms a frame", point.particles, point.milliseconds);
         point
     };
@@ -121,8 +120,8 @@ Written by `cargo run --release -p unipbd-benches --bin figure5`; do not edit by
 
 ![Time of a frame against the number of particles](images/figure5.svg)
 
-Two liquids side by side in a box, at the original's spacing, falling into place: mean wall-clock time of
-a frame of 1/60 s on all threads of the machine, neighbour search included. The original's times were
-measured once, on a machine with two cores; the others in this run.
+Two liquids side by side in a box, at the original's spacing, falling into place: mean time of a frame of
+1/60 s on one thread, neighbour search included. The original's times were measured once, also on one
+thread, of a machine with two cores; the others in this run.
 
 ";
