@@ -10,8 +10,8 @@ use unipbd_benches::Lattice;
 use unipbd_core::neighbors::{Grid, NeighborList, Periodic};
 use unipbd_core::parallel::Parallelism;
 use unipbd_core::simd::{
-    DensityInput, DensityOutput, Pairs, Weights, WendlandC2, correction, density, difference_gradient, laplacian,
-    repulsion, vorticity, xsph, xsph_mixed,
+    DensityInput, DensityOutput, Pairs, Reach, Weights, WendlandC2, correction, density, difference_gradient,
+    laplacian, repulsion, vorticity, xsph, xsph_mixed,
 };
 use unipbd_core::{Real, Vector};
 
@@ -43,7 +43,7 @@ fn passes(criterion: &mut Criterion) {
         bench("vorticity", &mut |_, out| vorticity(pairs, kernel, &set.x, &set.v, out));
         bench("gradient", &mut |out, _| difference_gradient(pairs, kernel, &set.x, &set.field, out));
         bench("laplacian", &mut |_, out| laplacian(pairs, kernel, &set.x, &set.field, one, out));
-        bench("repulsion", &mut |out, _| repulsion(pairs, 0.8, &set.x, one, out));
+        bench("repulsion", &mut |out, _| repulsion(pairs, Reach { full: 0.3, none: 0.8 }, &set.x, one, out));
     }
 }
 

@@ -9,7 +9,7 @@ use std::time::Instant;
 use unipbd_core::neighbors::{Grid, NeighborList, Periodic};
 use unipbd_core::parallel::Parallelism::{self, Pool, Serial};
 use unipbd_core::simd::{
-    DensityInput, DensityOutput, Level, Pairs, Weights, WendlandC2, correction, density, difference_gradient,
+    DensityInput, DensityOutput, Level, Pairs, Reach, Weights, WendlandC2, correction, density, difference_gradient,
     laplacian, repulsion, vorticity, xsph, xsph_mixed,
 };
 use unipbd_core::{Real, Vector};
@@ -168,7 +168,9 @@ fn pass_entries<'a>(case: &'a Case, level: Level, parallelism: Parallelism, tag:
             difference_gradient(pairs, kernel, &case.x, &case.field, &mut g3);
         }),
         timed(format!("laplacian    {tag}"), move || laplacian(pairs, kernel, &case.x, &case.field, one, &mut d)),
-        timed(format!("repulsion    {tag}"), move || repulsion(pairs, 0.8, &case.x, one, &mut g4)),
+        timed(format!("repulsion    {tag}"), move || {
+            repulsion(pairs, Reach { full: 0.3, none: 0.8 }, &case.x, one, &mut g4)
+        }),
     ]
 }
 

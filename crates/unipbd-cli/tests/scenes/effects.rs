@@ -269,6 +269,7 @@ fn the_baroclinic_source_turns_gas_and_does_not_lift_it() {
     let scale = 1.2 * 2.0 * 2.0 * 0.15 * 9.81 * 0.1;
     println!("lift {:.1e} of what each half is pushed by", lift / scale);
     assert!(lift < 1e-3 * scale, "{lift} kg m/s");
+    println!("kinetic energy {} J with, {} J without", with.kinetic_energy, without.kinetic_energy);
     assert!(with.kinetic_energy > 1.5 * without.kinetic_energy);
 }
 

@@ -16,6 +16,7 @@ fn closed_box() -> Solver {
         seed = 3
         [solver]
         substeps = 6
+        kernel_radius = 2.5
         [[gas]]
         name = "air"
         gravity_factor = -0.3
