@@ -1,8 +1,10 @@
 #!/bin/sh
-# Runs every scene, draws a picture of each into docs/gallery and writes docs/gallery.md.
+# Runs every scene, says where it does not do what it should, draws a picture of each into docs/gallery and
+# writes docs/gallery.md.
 # Usage: scripts/gallery.sh [SCENE_NAME ...]     (from the root of the project; all scenes by default)
 set -eu
 unipbd=${UNIPBD:-"cargo run --release --quiet --package unipbd-cli --"}
+failed=
 work=$(mktemp -d)
 trap 'rm -r "$work"' EXIT
 
@@ -21,6 +23,8 @@ moments() {
         open_gas*) echo 1.0 3.0 ;;
         closed_gas_liquid) echo 1.0 4.0 ;;
         closed_gas*) echo 1.5 3.5 ;;
+        rope) echo 0.5 6.0 ;;
+        seed_*) echo 1.0 5.0 ;;
         smoke_ring_obstacle) echo 0.6 2.0 ;;
         everything) echo 0.7 4.0 ;;
         *) echo 1.0 ;;
@@ -40,7 +44,7 @@ for scene in scenes/*.toml scenes/seed/*.toml; do
         case " $* " in *" $name "*) ;; *) continue ;; esac
     fi
     echo "$name"
-    $unipbd run "$scene" --output "$work/$name.mcap" --quiet
+    $unipbd run "$scene" --output "$work/$name.mcap" --expect --quiet || failed="$failed $name"
     for time in $(moments "$name"); do
         $unipbd render "$work/$name.mcap" -o "docs/gallery/$name-$time.png" --time "$time" --width 420 --force --quiet
     done
@@ -65,3 +69,5 @@ done
         done
     done
 } > docs/gallery.md
+
+[ -z "$failed" ] || { echo "not as expected:$failed" >&2; exit 1; }

@@ -1,5 +1,6 @@
 //! Particle sets, scenes and measurements that benchmarks share.
 
+pub mod growth;
 mod lattice;
 pub mod roofline;
 mod scenes;

@@ -133,3 +133,29 @@ def test_hooks_push_and_drive_bodies() -> None:
     sim.on_substep(lambda s: s.bodies["door"].push((1.0, 0.0)))
     with pytest.raises(ValueError, match="door"):
         sim.step()
+
+
+def test_the_floor_of_a_named_tank_carries_the_water() -> None:
+    scene = up.Scene(spacing=0.1)
+    scene.add_liquid("water", viscosity=0.05)
+    scene.add_block("water", min=(0, 0), max=(1, 1))
+    scene.add_tank(min=(0, 0), max=(1, 2), name="tank", open=["top"])
+    sim = scene.build(seed=1)
+    floor = []
+    for frame in sim.run(until=3.0):
+        if frame.time > 2.0:
+            floor.append(sim.wall_forces["tank bottom"][1])
+    assert np.mean(floor) == pytest.approx(-1000 * 9.81, rel=0.02)
+    assert sim.wall_forces == sim.diagnostics()["walls"]
+    assert set(sim.wall_forces) == {"tank left", "tank right", "tank bottom"}
+
+
+def test_a_rope_hangs_from_its_held_end() -> None:
+    scene = up.Scene(spacing=0.1)
+    scene.add_solid("cord")
+    scene.add_rope("cord", start=(0, 0), end=(1, 0), tethers="all")
+    sim = scene.build(seed=1)
+    for _ in sim.run(until=2.0):
+        pass
+    assert len(sim.positions) == 11
+    assert np.linalg.norm(sim.positions, axis=1).max() < 1.02

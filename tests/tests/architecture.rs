@@ -31,7 +31,7 @@ const MUTUAL: [(&str, &str); 4] =
 const SIDEWAYS: [(&str, &str); 1] = [("build", "edit")];
 
 /// Kinds of constraint: a file or folder each, and none names another.
-const CONSTRAINTS: [&str; 3] = ["batch", "contact", "density"];
+const CONSTRAINTS: [&str; 6] = ["adhesion", "batch", "contact", "density", "distance", "mass_density"];
 
 fn core() -> PathBuf {
     repository().join("crates/unipbd-core/src")
@@ -165,7 +165,14 @@ fn the_step_names_no_concrete_constraint() {
 
 #[test]
 fn only_the_builder_makes_density_groups_and_effects() {
-    let makers = ["Density::new", "Drag::new", "Viscosity::new", "Conduction::new", "VorticityConfinement::new"];
+    let makers = [
+        "Density::new",
+        "Drag::new",
+        "Viscosity::new",
+        "Conduction::new",
+        "VorticityConfinement::new",
+        "Baroclinic::new",
+    ];
     for path in files(&core()) {
         let code = code(&path);
         for maker in makers.into_iter().filter(|maker| code.contains(maker)) {

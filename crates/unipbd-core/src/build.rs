@@ -2,11 +2,12 @@
 
 mod bodies;
 mod carve;
+mod ropes;
 mod waves;
 
-use crate::constraints::{ConstraintGroup, Density, DensitySettings};
+use crate::constraints::{Adhesion, ConstraintGroup, Density, DensitySettings, MassDensity};
 use crate::effects::{
-    Cohesion, Conduction, Drag, Effect, Heating, QuadraticDrag, ShearViscosity, SmokeAdvection, Viscosity,
+    Baroclinic, Cohesion, Conduction, Drag, Effect, Heating, QuadraticDrag, ShearViscosity, SmokeAdvection, Viscosity,
     VorticityConfinement,
 };
 use crate::math::{Vector, Vector64, real, vector};
@@ -78,7 +79,11 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         rest: scene.solver.sleep,
     };
     let mut particles = particles(scene, seed, optional);
-    let rigid = rigid_bodies(scene, &mut particles);
+    let ropes = ropes::Ropes::lay(scene, &mut particles);
+    let mut rigid = rigid_bodies(scene, &mut particles);
+    for (id, body, place) in &ropes.tied {
+        rigid.iter_mut().for_each(|rigid| rigid.tie(*id, body, *place));
+    }
     Parts {
         rigid,
         particles,
@@ -87,7 +92,7 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         walls: Walls::new(scene),
         neighbors: Neighbors::new(periodic, real(settings.kernel_radius), real(least_skin)),
         cover,
-        groups: groups(scene, settings),
+        groups: groups(scene, settings, ropes),
         effects,
         smoke: (!scene.smoke.is_empty()).then(|| SmokeAdvection::new(scene)),
         emitters: (!scene.emitter.is_empty() || !scene.injector.is_empty()).then(|| EmitterSystem::new(scene, seed)),
@@ -105,11 +110,19 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     }
 }
 
-fn groups(scene: &Scene, density: DensitySettings) -> Vec<Box<dyn ConstraintGroup>> {
+fn groups(scene: &Scene, density: DensitySettings, ropes: ropes::Ropes) -> Vec<Box<dyn ConstraintGroup>> {
     let mut groups: Vec<Box<dyn ConstraintGroup>> = Vec::new();
-    if scene.materials().any(|material| material.phase().is_fluid()) {
-        groups.push(Box::new(Density::new(density)));
+    // A force: before what holds against it.
+    if let Some(adhesion) = Adhesion::new(scene) {
+        groups.push(Box::new(adhesion));
     }
+    if scene.materials().any(|material| material.phase().is_fluid()) {
+        groups.push(match &scene.solver.mass_density {
+            None => Box::new(Density::new(density)),
+            Some(description) => Box::new(MassDensity::new(scene, description)),
+        });
+    }
+    groups.extend(ropes.groups());
     groups
 }
 
@@ -129,6 +142,9 @@ fn effects(scene: &Scene, seed: u64) -> Vec<Box<dyn Effect>> {
     }
     if let Some(cohesion) = Cohesion::new(scene) {
         effects.push(Box::new(cohesion));
+    }
+    if let Some(baroclinic) = Baroclinic::new(scene) {
+        effects.push(Box::new(baroclinic));
     }
     if let Some(conduction) = Conduction::new(scene) {
         effects.push(Box::new(conduction));
@@ -229,7 +245,7 @@ fn particles(scene: &Scene, seed: u64, optional: OptionalColumns) -> Particles {
 
 fn add_points(points: &Points, scene: &Scene, particles: &mut Particles) {
     let Some((index, material)) = scene.material(&points.material) else { return };
-    let mass = material.density() * scene.spacing * scene.spacing;
+    let mass = material.particle_mass(scene.spacing);
     for (number, &position) in points.positions.iter().enumerate() {
         let velocity = points.velocities.get(number).copied().unwrap_or(points.velocity);
         particles.push(NewParticle {
@@ -247,7 +263,7 @@ impl Filling<'_> {
     fn pour(&self, scene: &Scene, seed: u64, particles: &mut Particles) {
         let Some((index, material)) = scene.material(self.material) else { return };
         let mut rng = Rng::new(seed, self.stream);
-        let mass = material.density() * scene.spacing * scene.spacing;
+        let mass = material.particle_mass(scene.spacing);
         for &point in &self.points {
             let shift = Vector64::new(rng.signed_unit(), rng.signed_unit()) * (self.jitter * scene.spacing);
             particles.push(NewParticle {

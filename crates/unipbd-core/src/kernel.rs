@@ -29,6 +29,10 @@ impl Kernel {
             KernelKind::WendlandC2 => None,
             KernelKind::CubicSpline => Some(Alternative::CubicSpline(CubicSpline::new(radius))),
             KernelKind::Poly6Spiky => Some(Alternative::Poly6Spiky(pair())),
+            KernelKind::Poly6Spiky3d => {
+                let pair = Mixed { value: Poly6::of_space(radius), slope: Spiky::of_space(radius) };
+                Some(Alternative::Poly6Spiky(pair))
+            }
         };
         Kernel { alternative, ..Kernel::new(radius) }
     }

@@ -48,6 +48,8 @@ pub struct Diagnostics {
     pub materials: Vec<MaterialDiagnostics>,
     /// Per constraint group, in solving order.
     pub groups: Vec<GroupDiagnostics>,
+    /// Per measured wall, in the order of the scene.
+    pub walls: Vec<WallForce>,
 }
 
 impl Diagnostics {
@@ -116,6 +118,15 @@ pub struct GroupDiagnostics {
     pub name: String,
     /// Largest constraint violation, in the group's own unit.
     pub violation: f64,
+}
+
+/// The force of the fluids on a wall that has a name.
+#[derive(Clone, Debug, PartialEq)]
+pub struct WallForce {
+    /// Name of the wall; the sides of a tank are `NAME left` and so on.
+    pub name: String,
+    /// Mean force over the last frame [N].
+    pub force: Vector64,
 }
 
 /// How grave an [`Event`] is.

@@ -20,6 +20,17 @@ pub struct RigidBodies {
     /// Distance from a sample within which a particle may be inside the body [m].
     near: Real,
     trespassers: Vec<Trespasser>,
+    /// Ends of ropes that move with bodies.
+    tied: Vec<Tied>,
+}
+
+/// A point that moves with a body.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+struct Tied {
+    id: u32,
+    body: u32,
+    /// Where it is on the body [m].
+    place: Vector64,
 }
 
 /// A fluid particle that may be inside a body.
@@ -39,7 +50,22 @@ impl RigidBodies {
             next += if first_sample.is_some() { body.samples.len() as u32 } else { 0 };
             first.push(next);
         }
-        RigidBodies { bodies, contacts, first_sample: first, near: (0.75 * spacing) as Real, trespassers: Vec::new() }
+        RigidBodies {
+            bodies,
+            contacts,
+            first_sample: first,
+            near: (0.75 * spacing) as Real,
+            trespassers: Vec::new(),
+            tied: Vec::new(),
+        }
+    }
+
+    /// From now on a particle moves with the body of this name, from a place in the world [m].
+    pub(crate) fn tie(&mut self, id: u32, body: &str, at: Vector64) {
+        let Some(number) = self.views().iter().position(|view| view.name == body) else { return };
+        let pose = self.bodies.pose(number as u32);
+        let place = Vector64::from_angle(-pose.angle).rotate(at - pose.position);
+        self.tied.push(Tied { id, body: number as u32, place });
     }
 
     /// The bodies as they are read from outside.
@@ -77,7 +103,7 @@ impl RigidBodies {
 
     /// Puts the samples where the bodies are predicted to be.
     pub(crate) fn place_samples(&self, particles: &mut Particles, rows: &RowIndex) {
-        self.each_sample(rows, |body, sample, row| {
+        self.each_follower(rows, |body, sample, row| {
             let (start, end) = (self.bodies.pose(body).apply(sample), self.bodies.predicted_pose(body).apply(sample));
             particles.start[row] = vector(start);
             particles.position[row] = vector(end);
@@ -95,7 +121,7 @@ impl RigidBodies {
 
     /// Puts the samples where the bodies are, with the velocity of the body's matter.
     pub(crate) fn settle_samples(&self, particles: &mut Particles, rows: &RowIndex) {
-        self.each_sample(rows, |body, sample, row| {
+        self.each_follower(rows, |body, sample, row| {
             let place = self.bodies.pose(body).apply(sample);
             particles.position[row] = vector(place);
             particles.velocity[row] = vector(self.bodies.velocity_at(body, place));
@@ -192,6 +218,16 @@ impl RigidBodies {
                 if let Some(row) = rows.row(id) {
                     visit(body as u32, sample, row as usize);
                 }
+            }
+        }
+    }
+
+    /// Visits the samples and what is tied to bodies.
+    fn each_follower(&self, rows: &RowIndex, mut visit: impl FnMut(u32, Vector64, usize)) {
+        self.each_sample(rows, &mut visit);
+        for tied in &self.tied {
+            if let Some(row) = rows.row(tied.id) {
+                visit(tied.body, tied.place, row as usize);
             }
         }
     }

@@ -39,6 +39,7 @@ pub fn running<'py>(py: Python<'py>, of: &Diagnostics) -> PyResult<Bound<'py, Py
     copy_entries!(dict, of: substeps_wanted, contact_penetration);
     dict.set_item("substeps_reason", of.substeps_reason.name())?;
     dict.set_item("momentum", (of.momentum.x, of.momentum.y))?;
+    dict.set_item("walls", walls(py, of.walls.iter().map(|wall| (&wall.name, wall.force.x, wall.force.y)))?)?;
     dict.set_item("counts", counts(py, of.count_by_phase)?)?;
     Ok(dict)
 }
@@ -48,9 +49,22 @@ pub fn recorded<'py>(py: Python<'py>, of: &DiagnosticsRecord) -> PyResult<Bound<
     let dict = PyDict::new(py);
     common!(dict, of);
     dict.set_item("momentum", (of.momentum_x, of.momentum_y))?;
+    dict.set_item("walls", walls(py, of.walls.iter().map(|wall| (&wall.name, wall.force_x, wall.force_y)))?)?;
     let by_phase = [of.count_liquid, of.count_gas, of.count_smoke, of.count_rigid, of.count_solid];
     dict.set_item("counts", counts(py, by_phase.map(u64::from))?)?;
     dict.set_item("state_hash", u64::from_str_radix(&of.state_hash, 16).ok())?;
+    Ok(dict)
+}
+
+/// Forces by the names of walls.
+fn walls<'py, 'a>(
+    py: Python<'py>,
+    forces: impl Iterator<Item = (&'a String, f64, f64)>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    for (name, x, y) in forces {
+        dict.set_item(name, (x, y))?;
+    }
     Ok(dict)
 }
 

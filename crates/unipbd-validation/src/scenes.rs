@@ -24,7 +24,14 @@ pub fn pool(size: (f64, f64), width: f64, solver: &SolverSettings) -> Scene {
 
 /// A floor with this friction.
 pub fn floor(friction: f64) -> HalfPlane {
-    HalfPlane { point: [0.0, 0.0], normal: [0.0, 1.0], velocity: [0.0; 2], friction, slip: Slip::Free }
+    HalfPlane {
+        name: String::new(),
+        point: [0.0, 0.0],
+        normal: [0.0, 1.0],
+        velocity: [0.0; 2],
+        friction,
+        slip: Slip::Free,
+    }
 }
 
 /// A body with an outline of its own to be set, and a name.

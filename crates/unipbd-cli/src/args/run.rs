@@ -16,7 +16,8 @@ Examples:
   unipbd run my_scene.toml --set liquid.0.viscosity=0.02 --set solver.substeps=16
   unipbd run my_scene.toml --stop-on 'density_error>0.05' --stop-on 'time>1.5'
 
-Exit codes: 0 done, 1 input or output, 2 arguments, 3 scene, 4 diverged, 5 --stop-on met, 130 Ctrl-C.";
+Exit codes: 0 done, 1 input or output, 2 arguments, 3 scene, 4 diverged, 5 --stop-on met or
+--expect not held, 130 Ctrl-C.";
 
 /// Changes to a scene.
 #[derive(Clone, Debug, Default, Args)]
@@ -87,6 +88,9 @@ pub struct RunArgs {
     /// density_error_mean, pressure_max, kinetic_energy, substeps. Quote it: < and > mean something to a shell.
     #[arg(long, value_name = "CONDITION", help_heading = "Running")]
     pub stop_on: Vec<StopCondition>,
+    /// Compare the run with the [expect] table of the scene: exit code 5 where it does not hold
+    #[arg(long, help_heading = "Running")]
+    pub expect: bool,
     /// The log and what goes into it.
     #[command(flatten)]
     pub log: LogArgs,

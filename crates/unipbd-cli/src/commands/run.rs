@@ -1,7 +1,7 @@
 //! `run`: a scene from start to end.
 
 use unipbd_core::observe::Diagnostics;
-use unipbd_core::{BuildOptions, SolverError};
+use unipbd_core::{BuildOptions, SolverError, Watch};
 
 use super::recording::Recording;
 use super::scene::{build, load};
@@ -26,7 +26,8 @@ pub(super) fn run(arguments: &RunArgs, console: Console) -> Result<Exit, Failure
         .map(|destination| Recording::start(destination, &simulation, &loaded, arguments.log.fields))
         .transpose()?;
     let progress = Progress::new(console, simulation.frames, loaded.scene.duration);
-    let mut run = Run { simulation, recording, statistics, progress, console, conditions: &arguments.stop_on };
+    let watch = arguments.expect.then(|| Watch::new(&loaded.scene));
+    let mut run = Run { watch, simulation, recording, statistics, progress, console, conditions: &arguments.stop_on };
     let ended = run.until_end();
     run.progress.finish();
     run.close(ended, title(&loaded.scene, &loaded.path))
@@ -40,6 +41,7 @@ struct Run<'a> {
     progress: Progress,
     console: Console,
     conditions: &'a [StopCondition],
+    watch: Option<Watch>,
 }
 
 impl Run<'_> {
@@ -67,6 +69,9 @@ impl Run<'_> {
         let diagnostics = self.simulation.solver.diagnostics();
         let events = self.simulation.solver.take_events();
         self.statistics.add_state(&diagnostics);
+        if let Some(watch) = &mut self.watch {
+            watch.observe(&self.simulation.solver);
+        }
         self.statistics.add_events(&events);
         if let Some(recording) = &mut self.recording {
             recording.frame(&self.simulation, &diagnostics, &events)?;
@@ -98,7 +103,12 @@ impl Run<'_> {
         let log = self.recording.take().map(Recording::finish).transpose();
         let (outcome, last) = ended?;
         let log: Option<LogFile> = log?;
-        let exit = exit_of(&outcome);
+        let completed = matches!(outcome, Outcome::Completed);
+        let violations = self.watch.filter(|_| completed).map(|watch| watch.violations(&self.simulation.solver));
+        let exit = match &violations {
+            Some(lines) if !lines.is_empty() => Exit::ConditionMet,
+            _ => exit_of(&outcome),
+        };
         let solver = &self.simulation.solver;
         let summary = Summary::new(scene, outcome, self.statistics, solver, last, log);
         match self.console.form {
@@ -114,6 +124,7 @@ impl Run<'_> {
             Outcome::Interrupted => self.console.note("interrupted"),
             Outcome::Completed => {}
         }
+        violations.iter().flatten().for_each(|line| self.console.error(format_args!("not as expected: {line}")));
         Ok(exit)
     }
 }

@@ -5,7 +5,7 @@ use unipbd_core::math::Vector64;
 use unipbd_core::observe::{self, Diagnostics};
 use unipbd_core::phase::Phase;
 
-use super::schema::{self, Bodies, BodyShape, BodyState, GroupDiagnostics, MaterialDiagnostics};
+use super::schema::{self, Bodies, BodyShape, BodyState, GroupDiagnostics, MaterialDiagnostics, WallForce};
 
 /// Diagnostics as the log holds them.
 pub(crate) fn diagnostics_message(diagnostics: &Diagnostics, state_hash: Option<u64>) -> schema::Diagnostics {
@@ -38,6 +38,7 @@ pub(crate) fn diagnostics_message(diagnostics: &Diagnostics, state_hash: Option<
         substeps_wanted: diagnostics.substeps_wanted,
         substeps_reason: diagnostics.substeps_reason.name().to_owned(),
         contact_penetration: diagnostics.contact_penetration,
+        walls: diagnostics.walls.iter().map(wall_message).collect(),
     }
 }
 
@@ -53,6 +54,10 @@ fn material_message(material: &observe::MaterialDiagnostics) -> MaterialDiagnost
 
 fn group_message(group: &observe::GroupDiagnostics) -> GroupDiagnostics {
     GroupDiagnostics { name: group.name.clone(), violation: group.violation }
+}
+
+fn wall_message(wall: &observe::WallForce) -> WallForce {
+    WallForce { name: wall.name.clone(), force_x: wall.force.x, force_y: wall.force.y }
 }
 
 fn capped(count: u64) -> u32 {

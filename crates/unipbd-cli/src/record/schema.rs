@@ -140,6 +140,9 @@ messages! {
         /// Deepest overlap of bodies with each other and with walls [m].
         #[prost(tag = "27", double)]
         contact_penetration: f64,
+        /// Per wall that has a name.
+        #[prost(tag = "28", message, repeated)]
+        walls: Vec<WallForce>,
     }
 
     /// Diagnostics of one material.
@@ -169,6 +172,19 @@ messages! {
         /// Largest constraint violation, in the group's own unit.
         #[prost(tag = "2", double)]
         violation: f64,
+    }
+
+    /// The force of the fluids on a wall.
+    message WallForce {
+        /// Name of the wall.
+        #[prost(tag = "1", string)]
+        name: String,
+        /// Mean force over the frame along x [N].
+        #[prost(tag = "2", double)]
+        force_x: f64,
+        /// Mean force over the frame along y [N].
+        #[prost(tag = "3", double)]
+        force_y: f64,
     }
 
     /// Columns of the particles of `/particles`, in its row order (ascending id). `id`, `material`

@@ -49,6 +49,9 @@ pub struct FrameLine<'a> {
     contact_penetration: f64,
     materials: BTreeMap<&'a str, MaterialEntry>,
     groups: BTreeMap<&'a str, GroupEntry>,
+    /// Forces on the walls that have names [N].
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    walls: BTreeMap<&'a str, [f64; 2]>,
 }
 
 #[derive(Debug, Serialize)]
@@ -89,6 +92,7 @@ impl<'a> From<&'a Diagnostics> for FrameLine<'a> {
             contact_penetration: diagnostics.contact_penetration,
             materials: materials(diagnostics),
             groups: groups(diagnostics),
+            walls: diagnostics.walls.iter().map(|wall| (wall.name.as_str(), wall.force.into())).collect(),
         }
     }
 }

@@ -94,3 +94,50 @@ fn heavy_over_light_grows_as_the_linear_theory_says_at_ratio_two() {
 fn heavy_over_light_grows_as_the_linear_theory_says_at_ratio_1_6() {
     check_growth(1.6);
 }
+
+#[test]
+fn two_liquids_that_change_places_keep_their_areas() {
+    let mut solver = solver(
+        r#"
+        spacing = 0.05
+        [[liquid]]
+        name = "heavy"
+        density = 2000.0
+        viscosity = 0.02
+        [[liquid]]
+        name = "light"
+        viscosity = 0.02
+        [[block]]
+        material = "light"
+        min = [0.0, 0.0]
+        max = [1.0, 1.2]
+        [[block]]
+        material = "heavy"
+        min = [1.0, 0.0]
+        max = [2.0, 1.2]
+        [[tank]]
+        min = [0.0, 0.0]
+        max = [2.0, 2.5]
+        open = ["top"]
+        "#,
+    );
+    let count = |solver: &Solver| solver.diagnostics().materials.iter().map(|of| of.count).collect::<Vec<_>>();
+    let start = count(&solver);
+    for _ in 0..16 {
+        let next = solver.time() + 0.25;
+        run_until(&mut solver, next);
+        assert_eq!(count(&solver), start);
+        for material in solver.diagnostics().materials {
+            // The area is count dx^2/(1 + C).
+            let shrunk = material.density_error_mean / (1.0 + material.density_error_mean);
+            assert!(shrunk < 0.01, "{} has lost {:.2} % of its area", material.name, 100.0 * shrunk);
+        }
+    }
+    let mean = |material: u16| {
+        let rows = (0..solver.positions().len()).filter(|&row| solver.material_indices()[row] == material);
+        let heights: Vec<f64> = rows.map(|row| f64::from(solver.positions()[row].y)).collect();
+        heights.iter().sum::<f64>() / heights.len() as f64
+    };
+    println!("heavy at {:.2} m, light at {:.2} m", mean(0), mean(1));
+    assert!(mean(1) > mean(0) + 0.4, "the light liquid lies on the heavy one");
+}

@@ -3,5 +3,9 @@
 mod coupling;
 mod effects;
 mod files;
+mod forces;
+mod gas;
 mod interface;
+mod ropes;
+mod seed;
 mod support;

@@ -6,7 +6,7 @@ use crate::bodies::{
 };
 use crate::constraints::contact::{ContactSettings, Contacts, DistanceRule, Joint, JointKind, Motor};
 use crate::math::Vector64;
-use crate::scene::{BodyDescription, JointDescription, JointRule, MotionDescription, RotationRule, Scene, Side};
+use crate::scene::{BodyDescription, JointDescription, JointRule, MotionDescription, Rope, RotationRule, Scene, Side};
 use crate::shapes::Wall;
 
 /// All bodies of a scene, and the contacts and joints between them and its walls.
@@ -21,6 +21,11 @@ pub(super) fn build(scene: &Scene) -> (Bodies, Contacts) {
     let mut contacts = Contacts::new(&walls(scene), ContactSettings::default());
     for description in &scene.joint {
         if let Some(joint) = joint(description, &bodies) {
+            contacts.add_joint(joint);
+        }
+    }
+    for rope in &scene.rope {
+        if let Some(joint) = rope_joint(rope, scene.spacing, &bodies) {
             contacts.add_joint(joint);
         }
     }
@@ -125,6 +130,21 @@ fn joint(description: &JointDescription, bodies: &Bodies) -> Option<Joint> {
             JointRule::Rod => rod(DistanceRule::Exact),
             JointRule::Rope => rod(DistanceRule::AtMost),
         },
+    })
+}
+
+/// What keeps a body at the end of a rope from going farther than its length from the held end.
+fn rope_joint(rope: &Rope, spacing: f64, bodies: &Bodies) -> Option<Joint> {
+    let name = rope.body.as_ref().filter(|_| rope.held.first())?;
+    let body = bodies.views().iter().position(|body| body.name == *name)? as u32;
+    let pose = bodies.pose(body);
+    let (length, compliance) = (rope.full_length(), rope.compliance * rope.pieces(spacing));
+    Some(Joint {
+        body,
+        other: None,
+        anchor: Vector64::from_angle(-pose.angle).rotate(Vector64::from(rope.to) - pose.position),
+        other_anchor: rope.from.into(),
+        kind: JointKind::Distance { length, compliance, rule: DistanceRule::AtMost },
     })
 }
 

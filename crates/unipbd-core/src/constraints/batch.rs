@@ -21,8 +21,9 @@ pub trait Constraint<const N: usize>: Send + Sync {
     fn evaluate(&self, positions: [Vector; N]) -> Option<(Real, [Vector; N])>;
 }
 
-/// Many constraints of one kind, solved by Jacobi iteration with averaging: the displacement of a
-/// particle is the mean over its constraints (Macklin et al. 2014, section 4.2), times `relaxation`.
+/// Many constraints of one kind, solved by Jacobi iteration with mass splitting (Tonge et al. 2012): each
+/// of the n constraints of a particle sees an n-th of its mass. For equal n this is the averaging of
+/// Macklin et al. 2014, section 4.2; unlike that it keeps momentum and leaves a compliance what it is.
 pub struct Batch<C, const N: usize> {
     constraints: Vec<C>,
     relaxation: Real,
@@ -48,7 +49,7 @@ impl<C: Constraint<N>, const N: usize> Batch<C, N> {
         }
     }
 
-    /// Sets the over-relaxation, 1 to 2 (default 1).
+    /// Sets the over-relaxation, 1 to 2 (default 1): the masses are split by so much less.
     #[must_use]
     pub fn with_relaxation(mut self, relaxation: f64) -> Self {
         self.relaxation = real(relaxation);
@@ -76,9 +77,11 @@ impl<C: Constraint<N>, const N: usize> Batch<C, N> {
             let Some((value, gradients)) = constraint.evaluate(positions) else { continue };
             self.violation = self.violation.max(if C::INEQUALITY { -value } else { value.abs() });
             let weights = rows.map(|row| now.particles.inverse_masses()[row as usize]);
+            let split = |row: u32| (self.share[row as usize] as Real / self.relaxation).max(1.0);
+            let split_weights = std::array::from_fn(|k| weights[k] * split(rows[k]));
             let alpha = constraint.compliance() * inverse_dt2;
             let old = self.lambda[index];
-            let mut new = old + multiplier_step(value, &gradients, &weights, old, alpha);
+            let mut new = old + multiplier_step(value, &gradients, &split_weights, old, alpha);
             if C::INEQUALITY {
                 new = new.max(0.0);
             }
@@ -118,8 +121,7 @@ impl<C: Constraint<N>, const N: usize> ConstraintGroup for Batch<C, N> {
         for (rows, steps) in self.rows.iter().zip(&self.steps) {
             let Some(rows) = rows else { continue };
             for (&row, &step) in rows.iter().zip(steps) {
-                let share = self.share[row as usize] as Real;
-                out.add(row as usize, step * (self.relaxation / share));
+                out.add(row as usize, step);
             }
         }
     }

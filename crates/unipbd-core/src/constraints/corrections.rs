@@ -1,4 +1,4 @@
-use crate::math::Vector;
+use crate::math::{Vector, Vector64};
 use std::ops::Range;
 
 /// What a group wants to move. Added up, then applied by the loop at once.
@@ -6,6 +6,7 @@ use std::ops::Range;
 pub struct Corrections {
     displacement: Vec<Vector>,
     load: Vec<Vector>,
+    wall_load: Vec<Vector64>,
 }
 
 impl Corrections {
@@ -29,17 +30,29 @@ impl Corrections {
         &mut self.load
     }
 
+    /// Forces on the measured walls times dt^2 [kg m]; empty where none is measured.
+    pub fn wall_loads(&self) -> &[Vector64] {
+        &self.wall_load
+    }
+
+    /// Forces on the measured walls times dt^2, to be written [kg m].
+    pub fn wall_loads_mut(&mut self) -> &mut [Vector64] {
+        &mut self.wall_load
+    }
+
     /// Adds a displacement to one row.
     pub fn add(&mut self, row: usize, displacement: Vector) {
         self.displacement[row] += displacement;
     }
 
-    /// Back to zero for the rows that are written, out of this many, and this many that may be samples
-    /// of bodies.
-    pub(crate) fn reset(&mut self, rows: usize, written: [Range<usize>; 2], samples: usize) {
+    /// Back to zero for the rows that are written, out of this many, this many that may be samples of
+    /// bodies, and measured walls.
+    pub(crate) fn reset(&mut self, rows: usize, written: [Range<usize>; 2], samples: usize, walls: usize) {
         self.displacement.resize(rows, Vector::ZERO);
         written.into_iter().for_each(|band| self.displacement[band].fill(Vector::ZERO));
         self.load.clear();
         self.load.resize(samples, Vector::ZERO);
+        self.wall_load.clear();
+        self.wall_load.resize(walls, Vector64::ZERO);
     }
 }

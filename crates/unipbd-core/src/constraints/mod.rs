@@ -5,17 +5,23 @@
 //! [`ConstraintGroup`] anywhere and hand it to [`Solver::add_group`](crate::Solver::add_group), or
 //! implement [`Constraint`] and let [`Batch`] do the rest.
 
+mod adhesion;
 mod batch;
 pub mod contact;
 mod corrections;
 mod density;
+mod distance;
+mod mass_density;
 mod projection;
 
 use std::ops::BitOr;
 
+pub use adhesion::Adhesion;
 pub use batch::{Batch, Constraint};
 pub use corrections::Corrections;
 pub use density::{Density, DensityMaterial, DensitySettings};
+pub use distance::{Distance, Tether};
+pub use mass_density::MassDensity;
 
 use crate::math::{Real, Vector};
 use crate::neighbors::Neighbors;

@@ -1,6 +1,7 @@
 //! Velocity passes after the projection: viscosity, drag, vorticity confinement, heat, and the
 //! advection of smoke. None of them moves a constrained particle.
 
+mod baroclinic;
 mod cohesion;
 mod conduction;
 mod confinement;
@@ -12,6 +13,7 @@ mod smoke;
 mod viscosity;
 mod wind;
 
+pub use baroclinic::Baroclinic;
 pub use cohesion::Cohesion;
 pub use conduction::Conduction;
 pub use confinement::VorticityConfinement;

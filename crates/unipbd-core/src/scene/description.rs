@@ -2,7 +2,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Block, BodyDescription, Disc, Emitter, Expect, Gas, HalfPlane, Heater, Injector, JointDescription, Liquid,
-    Obstacle, Points, Sink, Smoke, Solid, SolverSettings, Tank, Wave,
+    Obstacle, Points, Rope, Sink, Smoke, Solid, SolverSettings, Tank, Wave,
 };
 
 /// A whole scene. All quantities are in SI units; angles carry the suffix `_deg`.
@@ -68,6 +68,9 @@ pub struct Scene {
     /// Joints between bodies, or a body and the world.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub joint: Vec<JointDescription>,
+    /// Ropes of points.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub rope: Vec<Rope>,
     /// Static boxes: particles stay outside.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub obstacle: Vec<Obstacle>,
@@ -114,6 +117,7 @@ impl Default for Scene {
             tank: Vec::new(),
             body: Vec::new(),
             joint: Vec::new(),
+            rope: Vec::new(),
             obstacle: Vec::new(),
             wave: Vec::new(),
             injector: Vec::new(),

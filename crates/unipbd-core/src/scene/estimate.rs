@@ -109,7 +109,8 @@ fn start_count(scene: &Scene) -> f64 {
     let blocks = scene.block.iter().map(|block| block_counts(block, scene.spacing).into_iter().product::<f64>());
     let discs = scene.disc.iter().map(|disc| disc_count(disc, scene.spacing));
     let points = scene.points.iter().map(|points| points.positions.len() as f64);
-    blocks.chain(discs).chain(points).sum()
+    let ropes = scene.rope.iter().map(|rope| rope.pieces(scene.spacing) + 1.0);
+    blocks.chain(discs).chain(points).chain(ropes).sum()
 }
 
 fn changes(scene: &Scene) -> Vec<Change> {

@@ -11,6 +11,9 @@ pub struct Liquid {
     pub name: String,
     /// Rest density [kg/m^2].
     pub density: f64,
+    /// Mass of a particle; left out, that of a square of the spacing [kg].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub particle_mass: Option<f64>,
     /// XSPH viscosity per substep, 0 to 1: the fraction of velocity differences that is smoothed.
     pub viscosity: f64,
     /// Kinematic viscosity nu; a physical one, beside the cheap smoothing above [m^2/s].
@@ -19,6 +22,9 @@ pub struct Liquid {
     pub surface: LiquidSurface,
     /// Strength of surface tension, the pull of a particle on its neighbour [m/s^2].
     pub cohesion: f64,
+    /// Strength of the pull of walls and bodies: the acceleration of a particle on a flat wall; it ends a
+    /// kernel radius away [m/s^2].
+    pub adhesion: f64,
     /// Drag against the air that grows with the square of the speed [1/m].
     pub quadratic_drag: f64,
     /// Factor on gravity.
@@ -33,10 +39,12 @@ impl Default for Liquid {
         Liquid {
             name: String::new(),
             density: 1000.0,
+            particle_mass: None,
             viscosity: 0.0,
             kinematic_viscosity: 0.0,
             surface: LiquidSurface::Free,
             cohesion: 0.0,
+            adhesion: 0.0,
             quadratic_drag: 0.0,
             gravity_factor: 1.0,
             color: None,
@@ -65,6 +73,9 @@ pub struct Gas {
     pub name: String,
     /// Rest density [kg/m^2].
     pub density: f64,
+    /// Mass of a particle; left out, that of a square of the spacing [kg].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub particle_mass: Option<f64>,
     /// Acceleration is `gravity_factor` x temperature x gravity; negative lets hot gas rise.
     pub gravity_factor: f64,
     /// Drag rate k towards the environment velocity where the gas is thin [1/s].
@@ -73,6 +84,9 @@ pub struct Gas {
     pub quadratic_drag: f64,
     /// Strength of vorticity confinement, dimensionless (0 is off; above 5 it adds energy).
     pub vorticity: f64,
+    /// Baroclinic turbulence beta, dimensionless: vorticity grows by beta grad(rho/rho0) x g, with
+    /// rho/rho0 = 1 + `gravity_factor` x temperature, and less where the gas is thin.
+    pub baroclinic: f64,
     /// Diffusivity of temperature [m^2/s].
     pub conductivity: f64,
     /// XSPH viscosity per substep, 0 to 1.
@@ -97,10 +111,12 @@ impl Default for Gas {
         Gas {
             name: String::new(),
             density: 1.2,
+            particle_mass: None,
             gravity_factor: -0.3,
             drag: 0.0,
             quadratic_drag: 0.0,
             vorticity: 0.0,
+            baroclinic: 0.0,
             conductivity: 0.0,
             viscosity: 0.0,
             kinematic_viscosity: 0.0,
@@ -198,6 +214,16 @@ impl<'a> MaterialRef<'a> {
             MaterialRef::Smoke(_) | MaterialRef::Rigid => 0.0,
             MaterialRef::Solid(solid) => solid.density,
         }
+    }
+
+    /// Mass of one of its particles [kg]; 0 for smoke and bodies.
+    pub fn particle_mass(&self, spacing: f64) -> f64 {
+        let given = match self {
+            MaterialRef::Liquid(liquid) => liquid.particle_mass,
+            MaterialRef::Gas(gas) => gas.particle_mass,
+            _ => None,
+        };
+        given.unwrap_or(self.density() * spacing * spacing)
     }
 
     /// Kinematic viscosity [m^2/s].

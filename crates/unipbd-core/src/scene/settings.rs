@@ -1,10 +1,15 @@
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use super::{MassDensityDescription, Preset};
+
 /// How the constraints are solved.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct SolverSettings {
+    /// What keys that are left out are taken from.
+    #[serde(skip_serializing_if = "Preset::is_standard")]
+    pub preset: Preset,
     /// Substeps per frame: `"auto"` or a number.
     #[cfg_attr(feature = "schema", schemars(with = "SubstepsSchema"))]
     pub substeps: Substeps,
@@ -31,6 +36,10 @@ pub struct SolverSettings {
     pub constraint_mixing: f64,
     /// Artificial pressure k of Macklin & Müller 2013 (n = 4, 0.2 h), in squared spacings.
     pub artificial_pressure: f64,
+    /// A density weighted with masses, as printed in Macklin & Müller 2013, instead of the number
+    /// density: for comparison.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub mass_density: Option<MassDensityDescription>,
     /// Substeps without gravity before time 0 that bring the start to its rest density.
     pub settle_substeps: u32,
     /// Whether liquid at rest falls asleep: it is held where it is, at no cost, until something near it moves.
@@ -40,6 +49,7 @@ pub struct SolverSettings {
 impl Default for SolverSettings {
     fn default() -> Self {
         SolverSettings {
+            preset: Preset::Standard,
             substeps: Substeps::Auto,
             max_substeps: 256,
             target_compression: 0.01,
@@ -51,6 +61,7 @@ impl Default for SolverSettings {
             kernel: KernelKind::default(),
             constraint_mixing: 0.0,
             artificial_pressure: 0.0,
+            mass_density: None,
             settle_substeps: 40,
             sleep: false,
         }
@@ -106,6 +117,41 @@ impl SolverSettings {
         let part = (radius - below.radius) / (above.radius - below.radius);
         column(below) + part * (column(above) - column(below))
     }
+}
+
+/// Reads a table of which any key may be missing: the preset has them all.
+macro_rules! read_over_preset {
+    ($($key:ident: $kind:ty),* $(,)?) => {
+        impl<'de> Deserialize<'de> for SolverSettings {
+            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
+                #[derive(Default, Deserialize)]
+                #[serde(deny_unknown_fields, default)]
+                struct Keys {
+                    preset: Preset,
+                    $($key: Option<$kind>),*
+                }
+                let keys = Keys::deserialize(deserializer)?;
+                let preset = keys.preset.settings();
+                Ok(SolverSettings { preset: keys.preset, $($key: keys.$key.unwrap_or(preset.$key)),* })
+            }
+        }
+    };
+}
+read_over_preset! {
+    substeps: Substeps,
+    max_substeps: u32,
+    target_compression: f64,
+    iterations: u32,
+    tolerance: f64,
+    kernel_radius: f64,
+    gradients: Option<GradientPoint>,
+    relaxation: Option<f64>,
+    kernel: KernelKind,
+    constraint_mixing: f64,
+    artificial_pressure: f64,
+    mass_density: Option<MassDensityDescription>,
+    settle_substeps: u32,
+    sleep: bool,
 }
 
 /// Substeps per frame.
@@ -188,4 +234,8 @@ pub enum KernelKind {
     CubicSpline,
     /// Density by poly6, gradients by spiky, as in Müller et al. 2003: inconsistent, for comparison.
     Poly6Spiky,
+    /// The same with the constants of three dimensions, per metre of depth. They matter with a density
+    /// weighted with masses alone: a number density is scaled to its lattice at rest.
+    #[serde(rename = "poly6_spiky_3d")]
+    Poly6Spiky3d,
 }

@@ -27,7 +27,7 @@ impl Block {
 impl Tank {
     /// A container without friction, open at the top, from its lower left to its upper right corner [m].
     pub fn new(min: [f64; 2], max: [f64; 2]) -> Self {
-        Tank { min, max, open: vec![Side::Top], friction: 0.0, slip: Slip::Free }
+        Tank { name: String::new(), min, max, open: vec![Side::Top], friction: 0.0, slip: Slip::Free }
     }
 }
 

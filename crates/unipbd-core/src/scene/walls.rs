@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct HalfPlane {
+    /// Name under which the force of the fluids on it is reported; left out, the force is not measured.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub name: String,
     /// A point on the wall [m].
     pub point: [f64; 2],
     /// Direction from the wall towards the particles; need not have length 1.
@@ -25,6 +28,9 @@ pub struct HalfPlane {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Tank {
+    /// Name under which the force of the fluids on it is reported; left out, the force is not measured; its sides are `NAME left` and so on.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub name: String,
     /// Lower left corner [m].
     pub min: [f64; 2],
     /// Upper right corner [m].
@@ -45,6 +51,9 @@ pub struct Tank {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Obstacle {
+    /// Name under which the force of the fluids on it is reported; left out, the force is not measured.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub name: String,
     /// Lower left corner [m].
     pub min: [f64; 2],
     /// Upper right corner [m].
@@ -70,6 +79,18 @@ pub enum Side {
     Bottom,
     /// Largest y.
     Top,
+}
+
+impl Side {
+    /// The word for it.
+    pub const fn name(self) -> &'static str {
+        match self {
+            Side::Left => "left",
+            Side::Right => "right",
+            Side::Bottom => "bottom",
+            Side::Top => "top",
+        }
+    }
 }
 
 /// Whether a viscous fluid slips along a wall.

@@ -107,6 +107,17 @@ impl Poly6 {
             slope_scale: real(-24.0 / (PI * square * square)),
         }
     }
+
+    /// With the constant of three dimensions, 315/(64 pi h^9), per metre of depth: in the plane it
+    /// integrates to 1.23 m/h.
+    pub fn of_space(radius: f64) -> Poly6 {
+        let cube = radius * radius * radius;
+        Poly6 {
+            value_scale: real(315.0 / (64.0 * PI * cube)),
+            slope_scale: real(-945.0 / (32.0 * PI * cube * radius * radius)),
+            ..Poly6::new(radius)
+        }
+    }
 }
 
 impl Shape for Poly6 {
@@ -143,6 +154,17 @@ impl Spiky {
             inverse_square: real(1.0 / square),
             value_scale: real(10.0 / (PI * square)),
             slope_scale: real(-30.0 / (PI * square * square)),
+        }
+    }
+
+    /// With the constant of three dimensions, 15/(pi h^6), per metre of depth: in the plane it
+    /// integrates to 1.5 m/h.
+    pub fn of_space(radius: f64) -> Spiky {
+        let cube = radius * radius * radius;
+        Spiky {
+            value_scale: real(15.0 / (PI * cube)),
+            slope_scale: real(-45.0 / (PI * cube * radius * radius)),
+            ..Spiky::new(radius)
         }
     }
 }
@@ -335,5 +357,15 @@ mod tests {
             check(Spiky::new(radius), radius);
             check(CubicSpline::new(radius), radius);
         }
+    }
+
+    #[test]
+    fn kernels_of_space_are_those_of_the_plane_times_a_constant() {
+        let (radius, square) = (2.0, real(0.7));
+        let value = |kernel: Poly6| f64::from(kernel.at(square).0 * kernel.value_scale());
+        let slope = |kernel: Spiky| f64::from(kernel.at(square).1 * kernel.slope_scale());
+        let values = value(Poly6::of_space(radius)) / value(Poly6::new(radius));
+        let slopes = slope(Spiky::of_space(radius)) / slope(Spiky::new(radius));
+        assert!((values - 0.615).abs() < 1e-3 && (slopes - 0.75).abs() < 1e-6, "{values} {slopes}");
     }
 }

@@ -142,7 +142,7 @@ impl Nozzle {
             |(index, material)| Carrier {
                 material: index as MaterialIndex,
                 phase: material.phase(),
-                inverse_mass: real(1.0 / (material.density() * spacing * spacing)),
+                inverse_mass: real(1.0 / material.particle_mass(spacing)),
             },
         );
         let columns = columns(emitter, spacing);

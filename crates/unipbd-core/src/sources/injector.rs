@@ -40,7 +40,7 @@ impl RegionInjector {
     /// `None` where the material is unknown, which `Scene::validate` refuses.
     pub fn new(injector: &Injector, scene: &Scene, seed: u64, number: usize) -> Option<Self> {
         let (index, material) = scene.material(&injector.material)?;
-        let mass = material.density() * scene.spacing * scene.spacing;
+        let mass = material.particle_mass(scene.spacing);
         Some(RegionInjector {
             region: injector.region.clone(),
             rate: injector.rate,
@@ -113,8 +113,13 @@ impl RegionInjector {
         }
         let near = |other: Vector| neighbors.periodic().min_image(other - position).length() < self.room;
         let mut free = !added.iter().any(|&other| near(other));
-        // Rows that were added a moment ago are not in the grid yet; they are in `added` or far away.
-        neighbors.for_each_near(position, self.room, |row| free &= !near(particles.positions()[row]));
+        if neighbors.is_current() {
+            // Rows that were added a moment ago are not in the grid yet; they are in `added` or far away.
+            neighbors.for_each_near(position, self.room, |row| free &= !near(particles.positions()[row]));
+        } else {
+            // Rows were removed before this substep: those of the grid are others now.
+            free &= !particles.positions()[..particles.dense()].iter().any(|&other| near(other));
+        }
         free
     }
 }

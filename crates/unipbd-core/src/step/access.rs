@@ -5,7 +5,7 @@ use std::time::Duration;
 use super::Solver;
 use crate::bodies::Body;
 use crate::math::{Real, Vector};
-use crate::observe::{Event, Material, WallOutline};
+use crate::observe::{Event, Material, WallForce, WallOutline};
 use crate::particles::Particles;
 use crate::phase::{MaterialIndex, Phase};
 
@@ -120,6 +120,12 @@ impl Solver {
     /// Static walls.
     pub fn walls(&self) -> &crate::walls::Walls {
         &self.world.parts.walls
+    }
+
+    /// Mean forces of the fluids in the last frame on the walls that have a name; those on bodies are
+    /// [`Body::fluid_force`](crate::Body::fluid_force). All zero before the first frame and after a restore.
+    pub fn wall_forces(&self) -> Vec<WallForce> {
+        self.world.wall_forces()
     }
 
     /// Takes the events since the last call.

@@ -4,7 +4,7 @@ use super::world::World;
 use super::{Solver, Stage};
 use crate::bodies::BodyKind;
 use crate::math::{Real, Vector64, wide};
-use crate::observe::{Diagnostics, GroupDiagnostics, MaterialDiagnostics};
+use crate::observe::{Diagnostics, GroupDiagnostics, MaterialDiagnostics, WallForce};
 use crate::phase::Phase;
 
 /// Sums over a stretch of rows, combined in a fixed order.
@@ -71,8 +71,14 @@ impl World {
             speed_max: sums.speed_squared.sqrt(),
             contact_penetration: self.contact_penetration(),
             groups: groups.collect(),
+            walls: self.wall_forces(),
             materials,
         }
+    }
+
+    pub(super) fn wall_forces(&self) -> Vec<WallForce> {
+        let names = self.parts.walls.measured().iter();
+        names.zip(&self.wall_forces).map(|(name, force)| WallForce { name: name.clone(), force: *force }).collect()
     }
 
     /// Density errors at the present positions by row; measured when first asked for.

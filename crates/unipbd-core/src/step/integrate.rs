@@ -5,7 +5,7 @@
 //! out to 10^5 spacings from the origin, where x - x_n would lose gravity altogether.
 
 use crate::constraints::Corrections;
-use crate::math::{Real, Vector};
+use crate::math::{Real, Vector, wide};
 use crate::neighbors::Periodic;
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
@@ -79,21 +79,49 @@ pub(super) fn apply(particles: &mut Particles, corrections: &Corrections, walls:
                 if inverse_mass[row] > 0.0 {
                     displacement[k] += steps[row];
                     let place = start[row] + (displacement[k] + remainder[row]);
-                    let mut touches = false;
-                    for hit in walls.hits(place) {
-                        displacement[k] += hit.normal * hit.depth;
-                        touches = true;
-                    }
-                    // Friction comes after all walls: in a corner one wall must not undo the way that the
-                    // other pushes back.
-                    if touches {
-                        walls.hits(place).for_each(|hit| displacement[k] -= held_back(displacement[k], &hit));
-                    }
+                    meet_walls(&mut displacement[k], place, walls, |_, _| {});
                 }
                 // x = x_n + (u + rem).
                 position[k] = start[row] + (displacement[k] + remainder[row]);
             }
         });
+    }
+}
+
+/// What [`apply`] will push against the measured walls: minus the momentum it gives, times dt [kg m].
+pub(super) fn load_walls(particles: &Particles, corrections: &mut Corrections, walls: &Walls) {
+    for row in particles.bands().into_iter().flatten() {
+        let inverse_mass = particles.inverse_mass[row];
+        if inverse_mass == 0.0 || particles.phase[row] == Phase::Smoke {
+            continue;
+        }
+        let mut displacement = particles.displacement[row] + corrections.displacements()[row];
+        let place = particles.start[row] + (displacement + particles.remainder[row]);
+        meet_walls(&mut displacement, place, walls, |hit, push| {
+            if let Some(wall) = hit.measured {
+                corrections.wall_loads_mut()[usize::from(wall)] -= wide(push) / f64::from(inverse_mass);
+            }
+        });
+    }
+}
+
+/// Turns a displacement that ends at `place` out of all walls, and tells what each of them pushes.
+#[inline]
+fn meet_walls(displacement: &mut Vector, place: Vector, walls: &Walls, mut feel: impl FnMut(&Hit, Vector)) {
+    let mut touches = false;
+    for hit in walls.hits(place) {
+        let push = hit.normal * hit.depth;
+        *displacement += push;
+        feel(&hit, push);
+        touches = true;
+    }
+    // Friction comes after all walls: in a corner one wall must not undo the way that the other pushes back.
+    if touches {
+        for hit in walls.hits(place) {
+            let held = held_back(*displacement, &hit);
+            *displacement -= held;
+            feel(&hit, -held);
+        }
     }
 }
 

@@ -135,10 +135,12 @@ impl World {
     fn reset_corrections(&mut self) {
         let particles = &self.parts.particles;
         let samples = if self.parts.rigid.is_some() { particles.listed() } else { 0 };
-        self.corrections.reset(particles.len(), particles.listed_bands(), samples);
+        let walls = self.parts.walls.measured().len();
+        self.corrections.reset(particles.len(), particles.listed_bands(), samples, walls);
     }
 
     fn take_up_corrections(&mut self) {
+        self.measure_walls();
         let parts = &mut self.parts;
         integrate::apply(&mut parts.particles, &self.corrections, &parts.walls, parts.parallelism);
         if let Some(rigid) = &mut parts.rigid {
@@ -146,6 +148,18 @@ impl World {
             if self.stages.contains(&Stage::FindNeighbors) {
                 rigid.expel(&mut parts.particles, &parts.neighbors, &parts.walls, &self.rows, self.clock.dt);
             }
+        }
+    }
+
+    /// Adds what the corrections and the walls themselves push, where a scene measures it.
+    fn measure_walls(&mut self) {
+        if self.corrections.wall_loads().is_empty() {
+            return;
+        }
+        integrate::load_walls(&self.parts.particles, &mut self.corrections, &self.parts.walls);
+        let inverse_dt = 1.0 / self.clock.dt;
+        for (impulse, load) in self.wall_impulses.iter_mut().zip(self.corrections.wall_loads()) {
+            *impulse += *load * inverse_dt;
         }
     }
 

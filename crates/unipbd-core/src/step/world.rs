@@ -118,6 +118,10 @@ pub(crate) struct World {
     pub(super) needs_rows: bool,
     /// Whether a hook saw the running substep.
     pub(super) hooked: bool,
+    /// Impulses on the measured walls in the frame so far [kg m/s].
+    pub(super) wall_impulses: Vec<Vector64>,
+    /// Mean forces on the measured walls in the last frame [N].
+    pub(super) wall_forces: Vec<Vector64>,
 }
 
 impl World {
@@ -139,9 +143,18 @@ impl World {
             removed: Vec::new(),
             needs_rows: false,
             hooked: false,
+            wall_impulses: Vec::new(),
+            wall_forces: Vec::new(),
         };
+        world.forget_walls();
+        world.wall_forces.clone_from(&world.wall_impulses);
         world.plan();
         world
+    }
+
+    fn forget_walls(&mut self) {
+        self.wall_impulses.clear();
+        self.wall_impulses.resize(self.parts.walls.measured().len(), Vector64::ZERO);
     }
 
     /// Decides the stages: called when the scene is built or its groups change.
@@ -198,6 +211,7 @@ impl World {
             (self.iterated, self.stepped) = (0, 0);
             if !self.sleeps() {
                 let before = self.clock.dt;
+                self.forget_walls();
                 self.clock.substeps = self.choose_substeps();
                 self.clock.pressure_limit = self.pressure_limit();
                 self.clock.dt = self.parts.frame_time / f64::from(self.clock.substeps);
@@ -229,6 +243,8 @@ impl World {
         if let Some(rigid) = &mut self.parts.rigid {
             rigid.finish_frame(self.parts.frame_time);
         }
+        let inverse = 1.0 / self.parts.frame_time;
+        self.wall_forces = self.wall_impulses.iter().map(|impulse| *impulse * inverse).collect();
         self.clock.done = 0;
         self.clock.frame += 1;
         self.clock.time = self.clock.frame as f64 * self.parts.frame_time;

@@ -14,6 +14,8 @@ pub struct Hit {
     pub depth: Real,
     /// Coulomb friction coefficient.
     pub friction: Real,
+    /// Number of the wall among the measured ones.
+    pub measured: Option<u16>,
 }
 
 /// What a wall without slip does to a viscous fluid at a point.
@@ -32,6 +34,7 @@ struct Plane {
     friction: Real,
     slip: Slip,
     velocity: Vector,
+    measured: Option<u16>,
 }
 
 /// Where two walls of a tank meet: the part behind both is counted once, not twice.
@@ -40,6 +43,8 @@ struct Corner {
     point: Vector,
     /// Signs that turn the outside of both walls into the quadrant x < a, y < b.
     outward: Vector,
+    /// The measured numbers of the upright and of the level wall.
+    measured: [Option<u16>; 2],
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -48,6 +53,7 @@ struct Rectangle {
     max: Vector,
     friction: Real,
     slip: Slip,
+    measured: Option<u16>,
 }
 
 /// All static walls of a scene.
@@ -57,6 +63,8 @@ pub struct Walls {
     corners: Vec<Corner>,
     rectangles: Vec<Rectangle>,
     outlines: Vec<WallOutline>,
+    /// Names of the walls whose forces are measured.
+    measured: Vec<String>,
 }
 
 impl Walls {
@@ -72,6 +80,44 @@ impl Walls {
     /// Whether there are no walls.
     pub fn is_empty(&self) -> bool {
         self.planes.is_empty() && self.rectangles.is_empty()
+    }
+
+    /// Names of the walls whose forces are measured.
+    pub fn measured(&self) -> &[String] {
+        &self.measured
+    }
+
+    /// The gradient of [`coverage`](Self::coverage), shared out to the measured walls.
+    pub fn shares(&self, x: Vector, coverage: &Coverage, mut visit: impl FnMut(u16, Vector)) {
+        let reach = coverage.radius();
+        for plane in &self.planes {
+            let distance = (x - plane.point).dot(plane.normal);
+            if let Some(wall) = plane.measured.filter(|_| distance < reach) {
+                visit(wall, plane.normal * coverage.behind(distance).1);
+            }
+        }
+        for corner in &self.corners {
+            let a = (x - corner.point) * corner.outward;
+            if corner.measured != [None; 2] && a.min_element() > -reach {
+                let twice = coverage.quadrant(a.x, a.y).1 * corner.outward;
+                let parts = [Vector::new(-twice.x, 0.0), Vector::new(0.0, -twice.y)];
+                for (wall, part) in corner.measured.into_iter().zip(parts) {
+                    wall.into_iter().for_each(|wall| visit(wall, part));
+                }
+            }
+        }
+        for rectangle in &self.rectangles {
+            if let Some(wall) = rectangle.measured {
+                visit(wall, rectangle.coverage(x, coverage).1);
+            }
+        }
+    }
+
+    /// The number under which a wall is measured, if it has a name.
+    fn measure(&mut self, name: String) -> Option<u16> {
+        let number = u16::try_from(self.measured.len()).ok()?;
+        self.measured.push(name);
+        Some(number)
     }
 
     /// Lines to draw.
@@ -164,12 +210,14 @@ impl Walls {
         let (point, normal) = (Vector64::from(wall.point), Vector64::from(wall.normal).normalize());
         let velocity = Vector64::from(wall.velocity);
         let along = velocity - normal * velocity.dot(normal);
+        let measured = if wall.name.is_empty() { None } else { self.measure(wall.name.clone()) };
         self.planes.push(Plane {
             point: vector(point),
             normal: vector(normal),
             friction: real(wall.friction),
             slip: wall.slip,
             velocity: vector(along),
+            measured,
         });
         let along = normal.perp() * 1e3;
         self.outlines.push(WallOutline { points: vec![point + along, point - along], closed: false, endless: true });
@@ -184,14 +232,19 @@ impl Walls {
             (Side::Top, max, -Vector64::Y),
         ];
         let closed = |side: Side| !tank.open.contains(&side);
+        let mut numbers = [None; 4];
         for (side, point, normal) in sides {
             if closed(side) {
+                if !tank.name.is_empty() {
+                    numbers[side as usize] = self.measure(format!("{} {}", tank.name, side.name()));
+                }
                 self.planes.push(Plane {
                     point: vector(point),
                     normal: vector(normal),
                     friction: real(tank.friction),
                     slip: tank.slip,
                     velocity: Vector::ZERO,
+                    measured: numbers[side as usize],
                 });
             }
         }
@@ -199,7 +252,8 @@ impl Walls {
             for (vertical, y, sign_y) in [(Side::Bottom, min.y, -1.0), (Side::Top, max.y, 1.0)] {
                 if closed(horizontal) && closed(vertical) {
                     let (point, outward) = (Vector64::new(x, y), Vector64::new(sign_x, sign_y));
-                    self.corners.push(Corner { point: vector(point), outward: vector(outward) });
+                    let measured = [numbers[horizontal as usize], numbers[vertical as usize]];
+                    self.corners.push(Corner { point: vector(point), outward: vector(outward), measured });
                 }
             }
         }
@@ -208,7 +262,9 @@ impl Walls {
 
     fn add_obstacle(&mut self, obstacle: &Obstacle) {
         let (min, max) = (Vector64::from(obstacle.min), Vector64::from(obstacle.max));
+        let measured = if obstacle.name.is_empty() { None } else { self.measure(obstacle.name.clone()) };
         self.rectangles.push(Rectangle {
+            measured,
             min: vector(min),
             max: vector(max),
             friction: real(obstacle.friction),
@@ -224,7 +280,7 @@ impl Plane {
     #[inline]
     fn hit(&self, x: Vector) -> Option<Hit> {
         let depth = -(x - self.point).dot(self.normal);
-        (depth > 0.0).then_some(Hit { normal: self.normal, depth, friction: self.friction })
+        (depth > 0.0).then_some(Hit { normal: self.normal, depth, friction: self.friction, measured: self.measured })
     }
 }
 
@@ -252,7 +308,7 @@ impl Rectangle {
         }
         let sides = [(low.x, -Vector::X), (high.x, Vector::X), (low.y, -Vector::Y), (high.y, Vector::Y)];
         let (depth, normal) = sides.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
-        Some(Hit { normal, depth, friction: self.friction })
+        Some(Hit { normal, depth, friction: self.friction, measured: self.measured })
     }
 }
 
@@ -292,7 +348,7 @@ mod tests {
     use crate::kernel::Kernel;
 
     fn tank(open: Vec<Side>) -> Walls {
-        let tank = Tank { min: [0.0, 0.0], max: [10.0, 8.0], open, friction: 0.0, slip: Slip::Free };
+        let tank = Tank { open, ..Tank::new([0.0, 0.0], [10.0, 8.0]) };
         Walls::new(&Scene { tank: vec![tank], ..Scene::default() })
     }
 
@@ -329,7 +385,8 @@ mod tests {
 
     #[test]
     fn obstacle_covers_its_rectangle() {
-        let obstacle = Obstacle { min: [1.0, 1.0], max: [2.0, 4.0], friction: 0.0, slip: Slip::Free };
+        let obstacle =
+            Obstacle { name: String::new(), min: [1.0, 1.0], max: [2.0, 4.0], friction: 0.0, slip: Slip::Free };
         let walls = Walls::new(&Scene { obstacle: vec![obstacle], ..Scene::default() });
         let kernel = Kernel::new(2.5);
         let coverage = Coverage::new(&kernel);
@@ -338,6 +395,21 @@ mod tests {
             assert!((walls.coverage(x, &coverage).0 - expected).abs() < 2e-3);
         }
         assert_eq!(walls.clamp(Vector::new(1.1, 2.0)), Vector::new(1.0, 2.0));
+    }
+
+    #[test]
+    fn what_measured_walls_share_is_the_whole_gradient() {
+        let tank = Tank { name: "tank".to_owned(), ..Tank::new([0.0, 0.0], [10.0, 8.0]) };
+        let walls = Walls::new(&Scene { tank: vec![tank], ..Scene::default() });
+        assert_eq!(walls.measured(), ["tank left", "tank right", "tank bottom"]);
+        let coverage = Coverage::new(&Kernel::new(2.5));
+        for x in [Vector::new(0.5, 0.5), Vector::new(1.7, 0.2), Vector::new(9.0, 0.7), Vector::new(5.0, 0.5)] {
+            let mut shared = [Vector::ZERO; 3];
+            walls.shares(x, &coverage, |wall, slope| shared[usize::from(wall)] += slope);
+            let whole = walls.coverage(x, &coverage).1;
+            assert!((shared.iter().sum::<Vector>() - whole).length() < 1e-6, "{x}");
+            assert!(shared[0].x <= 0.0 && shared[0].y == 0.0, "the left wall takes what points to the left");
+        }
     }
 
     #[test]

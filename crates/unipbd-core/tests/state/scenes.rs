@@ -1,7 +1,7 @@
 //! Small scenes of every kind.
 
 use unipbd_core::scene::{
-    Block, BodyDescription, Disc, Emitter, Environment, Gas, Liquid, PointMotion, Points, Profile, Scene, Sheath, Slip,
+    Block, BodyDescription, Disc, Emitter, Environment, Gas, Liquid, PointMotion, Points, Profile, Scene, Sheath,
     Smoke, SmokeSource, Solid, SolverSettings, Substeps, Tank,
 };
 use unipbd_core::{BuildOptions, Solver};
@@ -22,7 +22,7 @@ pub fn points(material: &str, positions: &[[f64; 2]]) -> Points {
 }
 
 fn tank(width: f64) -> Tank {
-    Tank { min: [0.0, 0.0], max: [width, 4.0], open: Vec::new(), friction: 0.1, slip: Slip::Free }
+    Tank { open: Vec::new(), friction: 0.1, ..Tank::new([0.0, 0.0], [width, 4.0]) }
 }
 
 /// A column of water collapses.

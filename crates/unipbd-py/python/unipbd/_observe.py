@@ -174,6 +174,15 @@ class Observable:
         return self._native.diagnostics()
 
     @property
+    def wall_forces(self) -> dict[str, tuple[float, float]]:
+        """Mean forces of the fluids in the last frame on the walls that have a ``name`` [N].
+
+        The sides of a tank are ``"NAME left"``, ``"NAME right"``, ``"NAME bottom"`` and ``"NAME top"``.
+        """
+        forces: dict[str, tuple[float, float]] = self._native.diagnostics()["walls"]
+        return forces
+
+    @property
     def density_error_max(self) -> float:
         """Largest density error C of the fluid, as a fraction."""
         return float(self._native.diagnostics()["density_error_max"])

@@ -150,6 +150,17 @@ class Scene(Keys, Builder):
         node = resolve(self._root()._known(table))
         return Table({}, node.get("items", node)).describe()
 
+    def add_rope(
+        self, material: str, start: tuple[float, float], end: tuple[float, float], **values: Any
+    ) -> Table:
+        """Adds a rope of points of a solid (or of a liquid, which floats) from `start` to `end` [m].
+
+        Further keys are those of ``[[rope]]`` in a scene file, such as ``length``, ``compliance``,
+        ``held`` and ``body``.
+        """
+        ends: dict[str, Any] = {"from": start, "to": end}
+        return self.add("rope", material=material, **ends, **values)
+
     # -- use -----------------------------------------------------------------------------------
 
     def check(self) -> None:

@@ -129,6 +129,7 @@ fn channel_scene(resolution: u32, drive: Drive, solver: &SolverSettings) -> Scen
     let spacing = 1.0 / f64::from(resolution);
     let length = 16.0 * spacing;
     let wall = |y: f64, normal: f64, speed: f64| HalfPlane {
+        name: String::new(),
         point: [0.0, y],
         normal: [0.0, normal],
         velocity: [speed, 0.0],

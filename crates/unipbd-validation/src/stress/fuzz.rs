@@ -94,6 +94,7 @@ pub fn random_scene(seed: u64) -> (Scene, f64) {
         fps: [30.0, 60.0, 120.0, 240.0][random.whole(0, 3) as usize],
         solver: solver(&mut random),
         tank: vec![Tank {
+            name: String::new(),
             min: [0.0, 0.0],
             max: [width * spacing, height * spacing],
             open: Vec::new(),

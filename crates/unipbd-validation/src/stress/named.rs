@@ -1,6 +1,6 @@
 //! Stresses with a name.
 
-use unipbd_core::scene::{Block, Liquid, Scene, Slip, SolverSettings, Substeps, Tank};
+use unipbd_core::scene::{Block, Liquid, Scene, SolverSettings, Substeps, Tank};
 use unipbd_core::{BuildOptions, Edit, Vector64};
 
 use super::{Ending, endure};
@@ -40,7 +40,7 @@ const SPACING: f64 = 0.1;
 
 /// A closed tank of 16 x 16 spacings at `corner`.
 fn tank(corner: f64) -> Tank {
-    Tank { min: [corner, 0.0], max: [corner + 1.6, 1.6], open: Vec::new(), friction: 0.0, slip: Slip::Free }
+    Tank { open: Vec::new(), ..Tank::new([corner, 0.0], [corner + 1.6, 1.6]) }
 }
 
 /// Water in half of that tank.

@@ -127,6 +127,7 @@ impl ConstraintGroup for Density {
         self.step_multipliers(now);
         self.correct(now, out);
         self.load_bodies(now, out);
+        self.load_walls(now, out);
         self.repel(now, out);
         self.press_apart(now, out);
     }

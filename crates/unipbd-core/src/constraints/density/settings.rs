@@ -93,11 +93,10 @@ impl DensitySettings {
 
 impl DensityMaterial {
     fn new(material: MaterialRef<'_>, scene: &Scene, rest_response: f64) -> Self {
-        let mass = material.density() * scene.spacing * scene.spacing;
+        let mass = material.particle_mass(scene.spacing);
         // The lightest sets the force of a pair: it gives back the full part, a heavier one less.
         let two_sided = scene.materials().filter(|material| material.is_two_sided());
-        let lightest = two_sided.map(|material| material.density()).fold(f64::INFINITY, f64::min);
-        let lightest = lightest * scene.spacing * scene.spacing;
+        let lightest = two_sided.map(|material| material.particle_mass(scene.spacing)).fold(f64::INFINITY, f64::min);
         let mixing = real(scene.solver.constraint_mixing * rest_response / mass);
         let filled = real(scene.solver.relaxation_of_filled());
         match material.phase() {
@@ -152,8 +151,9 @@ fn repulsion_reach(spacing: f64) -> Reach {
 
 /// The mass of every dense particle, if it is the same for all and none is moved by a script [kg].
 fn uniform_mass(scene: &Scene) -> Option<f64> {
-    let mut densities = scene.materials().filter(|material| material.phase().is_dense()).map(|m| m.density());
-    let first = densities.next()?;
-    let uniform = scene.emitter.is_empty() && scene.body.is_empty() && densities.all(|density| density == first);
-    uniform.then_some(first * scene.spacing * scene.spacing)
+    let dense = scene.materials().filter(|material| material.phase().is_dense());
+    let mut masses = dense.map(|material| material.particle_mass(scene.spacing));
+    let first = masses.next()?;
+    let uniform = scene.emitter.is_empty() && scene.body.is_empty() && masses.all(|mass| mass == first);
+    uniform.then_some(first)
 }

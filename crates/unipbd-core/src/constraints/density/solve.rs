@@ -2,7 +2,7 @@
 
 use super::{Density, DensityMaterial};
 use crate::constraints::{Corrections, Substep};
-use crate::math::{Real, Vector};
+use crate::math::{Real, Vector, wide};
 use crate::phase::Phase;
 use crate::scene::GradientPoint;
 use crate::simd::near::{self, Near, Work};
@@ -99,6 +99,22 @@ impl Density {
                 *load -= sums[i] * volume;
             }
         });
+    }
+
+    /// The forces of the same multipliers on the measured walls.
+    pub(super) fn load_walls(&self, now: Substep<'_>, out: &mut Corrections) {
+        if out.wall_loads().is_empty() {
+            return;
+        }
+        let positions = Density::gradient_positions(self.settings.gradients, &self.middle, now);
+        let (steps, inverse_masses) = (&self.step, now.particles.inverse_masses());
+        for (row, &position) in positions.iter().enumerate() {
+            if steps[row] != 0.0 && inverse_masses[row] > 0.0 {
+                now.walls.shares(position, &self.coverage, |wall, slope| {
+                    out.wall_loads_mut()[usize::from(wall)] += wide(slope * steps[row]);
+                });
+            }
+        }
     }
 
     /// Keeps gas particles apart: below 0.8 spacings a pair gives back a part of its overlap.

@@ -26,7 +26,8 @@ pub(super) fn check(checker: &mut Checker) {
     }
 }
 
-fn check_body(checker: &mut Checker, path: KeyPath, name: &str, names: &[String]) {
+/// Notes the name of a body that does not exist.
+pub(super) fn check_body(checker: &mut Checker, path: KeyPath, name: &str, names: &[String]) {
     if names.iter().any(|known| known == name) {
         return;
     }

@@ -15,10 +15,12 @@ pub(super) fn check(checker: &mut Checker) {
     for (index, liquid) in checker.scene.liquid.iter().enumerate() {
         let path = KeyPath::entry("liquid", index);
         checker.range(path.then("density"), liquid.density, Allowed::Positive, DENSITY_HINT);
+        check_mass(checker, &path, liquid.particle_mass);
         checker.range(path.then("viscosity"), liquid.viscosity, Allowed::Between(0.0, 1.0), VISCOSITY_HINT);
         let nu = liquid.kinematic_viscosity;
         checker.range(path.then("kinematic_viscosity"), nu, Allowed::NotNegative, NU_HINT);
         checker.range(path.then("cohesion"), liquid.cohesion, Allowed::NotNegative, "an acceleration in m/s^2");
+        checker.range(path.then("adhesion"), liquid.adhesion, Allowed::NotNegative, "an acceleration in m/s^2");
         checker.range(path.then("quadratic_drag"), liquid.quadratic_drag, Allowed::NotNegative, QUADRATIC_HINT);
         if checker.scene.solver.sleep {
             check_sleep(checker, &path, liquid);
@@ -55,6 +57,7 @@ fn check_gases(checker: &mut Checker) {
     for (index, gas) in checker.scene.gas.iter().enumerate() {
         let path = KeyPath::entry("gas", index);
         checker.range(path.then("density"), gas.density, Allowed::Positive, DENSITY_HINT);
+        check_mass(checker, &path, gas.particle_mass);
         checker.range(path.then("drag"), gas.drag, Allowed::NotNegative, "a rate in 1/s; 0 is no drag");
         checker.range(path.then("quadratic_drag"), gas.quadratic_drag, Allowed::NotNegative, QUADRATIC_HINT);
         checker.range(path.then("conductivity"), gas.conductivity, Allowed::NotNegative, "a diffusivity in m^2/s");
@@ -66,6 +69,13 @@ fn check_gases(checker: &mut Checker) {
             checker.range(path.then("keep_radius"), radius, Allowed::Positive, hint);
         }
         checker.range(path.then("keep_age"), gas.keep_age, Allowed::NotNegative, "in seconds");
+    }
+}
+
+fn check_mass(checker: &mut Checker, path: &KeyPath, mass: Option<f64>) {
+    if let Some(mass) = mass {
+        let hint = "in kg; left out, density times the squared spacing";
+        checker.range(path.then("particle_mass"), mass, Allowed::Positive, hint);
     }
 }
 

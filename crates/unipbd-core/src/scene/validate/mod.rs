@@ -14,6 +14,7 @@ mod motion;
 mod overlap;
 mod placement;
 mod regions;
+mod ropes;
 mod settings;
 mod size;
 mod sources;
@@ -36,6 +37,7 @@ impl Scene {
         bodies::check(&mut checker);
         joints::check(&mut checker);
         regions::check(&mut checker);
+        ropes::check(&mut checker);
         size::check(&mut checker);
         if checker.size_is_sane {
             overlap::check(&mut checker);

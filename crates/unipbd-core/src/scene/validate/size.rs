@@ -20,9 +20,11 @@ fn check_counts(checker: &mut Checker, spacing: f64) -> bool {
     let blocks = scene.block.iter().map(|block| block_counts(block, spacing).into_iter().product::<f64>());
     let discs = scene.disc.iter().map(|disc| disc_count(disc, spacing));
     let points = scene.points.iter().map(|points| points.positions.len() as f64);
+    let ropes = scene.rope.iter().map(|rope| rope.pieces(spacing) + 1.0);
     let paths = |kind: &'static str| (0..).map(move |index| KeyPath::entry(kind, index));
+    let filled = paths("block").zip(blocks).chain(paths("disc").zip(discs));
     let counts: Vec<(KeyPath, f64)> =
-        paths("block").zip(blocks).chain(paths("disc").zip(discs)).chain(paths("points").zip(points)).collect();
+        filled.chain(paths("points").zip(points)).chain(paths("rope").zip(ropes)).collect();
     let mut sane = true;
     for (path, count) in counts.iter().filter(|(_, count)| *count >= TOO_MANY_PARTICLES && count.is_finite()) {
         checker.problem(path.clone(), too_many("holds", *count), "make it smaller or raise `spacing`");
@@ -107,6 +109,10 @@ fn points(scene: &Scene) -> Vec<(KeyPath, [f64; 2])> {
     }
     for (index, body) in scene.body.iter().enumerate() {
         add("body", index, "position", body.position);
+    }
+    for (index, rope) in scene.rope.iter().enumerate() {
+        add("rope", index, "from", rope.from);
+        add("rope", index, "to", rope.to);
     }
     let domain = &scene.domain;
     let extents = [("periodic_x", domain.periodic_x), ("periodic_y", domain.periodic_y)];

@@ -35,6 +35,7 @@ pub(super) fn check(checker: &mut Checker) {
     }
     check_emitters(checker);
     let none = scene.block.is_empty() && scene.disc.is_empty() && scene.emitter.is_empty() && scene.body.is_empty();
+    let none = none && scene.rope.is_empty();
     if none && scene.points.iter().all(|points| points.positions.is_empty()) {
         let message = "the scene has no particles: neither [[block]] nor [[disc]], [[emitter]] or [[body]]";
         checker.problem(KeyPath::default(), message, "add a [[block]] with material, min and max, and its [[liquid]]");

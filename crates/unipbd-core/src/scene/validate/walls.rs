@@ -1,5 +1,7 @@
 //! Half-planes, tanks and obstacles by themselves and on periodic axes.
 
+use std::collections::BTreeMap;
+
 use super::checker::{Allowed, Checker};
 use super::geometry::AXES;
 use crate::scene::{KeyPath, Side};
@@ -7,6 +9,7 @@ use crate::scene::{KeyPath, Side};
 const FRICTION_HINT: &str = "a Coulomb coefficient; 0 is a slippery wall";
 
 pub(super) fn check(checker: &mut Checker) {
+    check_names(checker);
     check_half_planes(checker);
     check_tanks(checker);
     for (index, obstacle) in checker.scene.obstacle.iter().enumerate() {
@@ -14,6 +17,23 @@ pub(super) fn check(checker: &mut Checker) {
         checker.range(path.then("friction"), obstacle.friction, Allowed::NotNegative, FRICTION_HINT);
         if checker.corners(&path, obstacle.min, obstacle.max) {
             check_thickness(checker, &path, obstacle.min, obstacle.max);
+        }
+    }
+}
+
+/// Walls that are measured have names that tell them apart.
+fn check_names(checker: &mut Checker) {
+    let scene = checker.scene;
+    let planes = scene.half_plane.iter().enumerate().map(|(n, wall)| (KeyPath::entry("half_plane", n), &wall.name));
+    let tanks = scene.tank.iter().enumerate().map(|(n, wall)| (KeyPath::entry("tank", n), &wall.name));
+    let boxes = scene.obstacle.iter().enumerate().map(|(n, wall)| (KeyPath::entry("obstacle", n), &wall.name));
+    let mut seen = BTreeMap::new();
+    for (path, name) in planes.chain(tanks).chain(boxes).filter(|(_, name)| !name.is_empty()) {
+        if let Some(first) = seen.get(name) {
+            let message = format!("the name \"{name}\" is taken by {first}");
+            checker.problem(path.then("name"), message, "names of walls must differ");
+        } else {
+            seen.insert(name, path);
         }
     }
 }

@@ -1,0 +1,147 @@
+//! The museum piece: what the `seed` preset is made of, and that it shows its faults.
+
+use unipbd_core::Solver;
+use unipbd_core::scene::{Preset, SolverSettings, Substeps};
+
+use crate::support::{run_until, solver};
+
+/// Two liquids side by side, with these solver keys.
+fn two_liquids(keys: &str) -> Solver {
+    solver(&format!(
+        r#"
+        spacing = 0.62
+        gravity = [0.0, -9.8]
+        [solver]
+        kernel_radius = 3.2258
+        {keys}
+        [[liquid]]
+        name = "light"
+        density = 1.0
+        particle_mass = 1.0
+        surface = "none"
+        [[liquid]]
+        name = "heavy"
+        density = 2.0
+        particle_mass = 1.0
+        surface = "none"
+        [[block]]
+        material = "light"
+        min = [-6.2, 0.0]
+        max = [0.0, 12.4]
+        [[block]]
+        material = "heavy"
+        min = [0.0, 0.0]
+        max = [6.2, 12.4]
+        [[tank]]
+        min = [-6.2, 0.0]
+        max = [6.2, 12.4]
+        open = ["top"]
+        "#
+    ))
+}
+
+/// Every key of the preset, one by one.
+const SPELLED_OUT: &str = r#"
+    substeps = 1
+    iterations = 3
+    settle_substeps = 0
+    kernel = "poly6_spiky_3d"
+    gradients = "predicted"
+    [solver.mass_density]
+    liquid_mixing = 0.01
+    gas_mixing = 0.05
+    artificial_pressure = 0.1
+    liquid_reference = 0.2
+    gas_reference = 0.25
+    averaging = "neighbors"
+"#;
+
+#[test]
+fn the_seed_preset_is_a_table_of_options_and_nothing_else() {
+    let (mut preset, mut options) = (two_liquids("preset = \"seed\""), two_liquids(SPELLED_OUT));
+    assert_eq!(preset.stages(), options.stages());
+    run_until(&mut preset, 0.5);
+    run_until(&mut options, 0.5);
+    assert_eq!(preset.positions(), options.positions());
+}
+
+#[test]
+fn keys_beside_a_preset_win_over_it() {
+    let settings = |keys: &str| {
+        let text = format!(
+            "[solver]\n{keys}\n[[liquid]]\nname = \"water\"\n[[block]]\nmaterial = \"water\"\nmin = [0.0, 0.0]\nmax = [1.0, 1.0]"
+        );
+        unipbd_cli::scene_file::parse(&text, "test.toml", &[]).unwrap().scene.solver
+    };
+    let changed = settings("iterations = 7\npreset = \"seed\"");
+    assert_eq!((changed.iterations, changed.substeps), (7, Substeps::Fixed(1)));
+    assert_eq!(SolverSettings { iterations: 3, ..changed }, Preset::Seed.settings());
+    assert_eq!(settings("iterations = 1\npreset = \"seed\"").iterations, 1, "a key that is given is given");
+    assert_eq!(settings(""), SolverSettings::default());
+}
+
+/// Density errors of a material, inside alone: at least a kernel radius from every surface.
+fn inside(solver: &Solver, material: u16) -> Vec<f64> {
+    let rows = (0..solver.positions().len()).filter(|&row| solver.material_indices()[row] == material);
+    let deep = rows.filter(|&row| {
+        let x = solver.positions()[row];
+        x.x.abs() > 2.0 && x.x.abs() < 4.2 && x.y > 2.0 && x.y < 10.4
+    });
+    deep.map(|row| f64::from(solver.density_errors()[row])).collect()
+}
+
+#[test]
+fn the_seed_starts_far_from_its_rest_densities_and_gains_energy() {
+    let mut seed = two_liquids("preset = \"seed\"");
+    let mean = |errors: Vec<f64>| errors.iter().sum::<f64>() / errors.len() as f64;
+    let (light, heavy) = (mean(inside(&seed, 0)), mean(inside(&seed, 1)));
+    println!("the start is off by {:+.0} % and {:+.0} %", 100.0 * light, 100.0 * heavy);
+    assert!((light - 0.6).abs() < 0.02 && (heavy + 0.2).abs() < 0.01, "{light} {heavy}");
+    let energy = |solver: &Solver| solver.diagnostics().kinetic_energy + solver.diagnostics().potential_energy;
+    let start = energy(&seed);
+    run_until(&mut seed, 0.3);
+    assert!(energy(&seed) > 1.1 * start, "{} J from {start} J", energy(&seed));
+    run_until(&mut seed, 1.0);
+    let highest = seed.positions().iter().map(|x| x.y).fold(0.0, f32::max);
+    assert!(highest > 15.0, "the light liquid is thrown up, to {highest} m");
+}
+
+#[test]
+fn momentum_is_kept_without_averaging_and_lost_with_it() {
+    let momentum = |averaging: &str| {
+        let mut drops = solver(&format!(
+            r#"
+            spacing = 0.62
+            gravity = [0.0, 0.0]
+            [solver]
+            preset = "seed"
+            kernel_radius = 3.2258
+            mass_density = {{ averaging = "{averaging}" }}
+            [[liquid]]
+            name = "light"
+            density = 1.0
+            particle_mass = 1.0
+            [[liquid]]
+            name = "heavy"
+            density = 2.0
+            particle_mass = 3.0
+            [[disc]]
+            material = "light"
+            center = [-3.0, 0.3]
+            radius = 3.0
+            velocity = [1.0, 0.0]
+            [[disc]]
+            material = "heavy"
+            center = [3.0, 0.0]
+            radius = 2.0
+            "#
+        ));
+        let start = drops.diagnostics().momentum;
+        run_until(&mut drops, 0.5);
+        (drops.diagnostics().momentum - start).length() / start.length()
+    };
+    let (kept, lost) = (momentum("none"), momentum("neighbors"));
+    println!("momentum changes by {kept:.1e} without averaging, {lost:.1e} with it");
+    assert!(kept < 1e-4, "{kept}");
+    assert!(lost > 1e-2, "averaging by neighbours does not keep momentum: {lost}");
+}

@@ -1,0 +1,26 @@
+//! Ropes.
+
+use super::checker::{Allowed, Checker, rounded};
+use super::joints::check_body;
+use super::materials::check_reference;
+use crate::phase::Phase;
+use crate::scene::KeyPath;
+
+pub(super) fn check(checker: &mut Checker) {
+    let names = checker.scene.body_names();
+    for (index, rope) in checker.scene.rope.iter().enumerate() {
+        let path = KeyPath::entry("rope", index);
+        check_reference(checker, path.then("material"), &rope.material, &[Phase::Solid, Phase::Liquid]);
+        checker.range(path.then("compliance"), rope.compliance, Allowed::NotNegative, "in m/N; 0 does not stretch");
+        if let Some(body) = &rope.body {
+            check_body(checker, path.then("body"), body, &names);
+        }
+        let distance = (rope.to[0] - rope.from[0]).hypot(rope.to[1] - rope.from[1]);
+        let length = rope.full_length();
+        let hint = "make it longer, or move the ends together";
+        if checker.range(path.then("length"), length, Allowed::Positive, hint) && length < distance * (1.0 - 1e-9) {
+            let message = format!("is shorter than the distance of the ends ({} m)", rounded(distance));
+            checker.problem(path.then("length"), message, hint);
+        }
+    }
+}
