@@ -115,7 +115,14 @@ fn set(solver: &mut SolverSettings, key: &str, value: &str) -> Result<(), Box<dy
     Ok(())
 }
 
+/// Writes the sheet after every case: a run that is cut off leaves what it has.
 fn run_full() -> Result<bool, Box<dyn std::error::Error>> {
+    std::fs::create_dir_all("docs")?;
+    let charts: Vec<String> = sweep::CASES
+        .iter()
+        .map(|(name, ..)| format!("accuracy/{name}.svg"))
+        .filter(|path| Path::new("docs").join(path).exists())
+        .collect();
     let mut entries = Vec::new();
     for case in cases::ALL {
         let mut resolutions = case.full.to_vec();
@@ -127,14 +134,8 @@ fn run_full() -> Result<bool, Box<dyn std::error::Error>> {
                 entries.push(entry);
             }
         }
+        std::fs::write("docs/accuracy.md", sheet(&entries, &charts))?;
     }
-    std::fs::create_dir_all("docs")?;
-    let charts: Vec<String> = sweep::CASES
-        .iter()
-        .map(|(name, ..)| format!("accuracy/{name}.svg"))
-        .filter(|path| Path::new("docs").join(path).exists())
-        .collect();
-    std::fs::write("docs/accuracy.md", sheet(&entries, &charts))?;
     Ok(true)
 }
 
