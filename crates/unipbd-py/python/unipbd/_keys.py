@@ -55,6 +55,8 @@ class Keys:
     """Rigid bodies, one table each."""
     joint: Tables
     """Joints between bodies, or a body and the world."""
+    rope: Tables
+    """Ropes of points, loose, held, or fixed to bodies."""
 
     emitter: Tables
     """Sources of particles."""
