@@ -53,7 +53,7 @@ pub fn sheet(entries: &[Entry], charts: &[String]) -> String {
          A case that misses its band says so.\n",
     );
     for case in crate::cases::ALL {
-        let own: Vec<&Entry> = entries.iter().filter(|entry| std::ptr::eq(entry.case, case)).collect();
+        let own: Vec<&Entry> = entries.iter().filter(|entry| entry.case.name == case.name).collect();
         if own.is_empty() {
             continue;
         }

@@ -1,6 +1,7 @@
 //! Quick sizes of the cases against their bands, and a part of the stresses.
 
 use unipbd_core::scene::{GradientPoint, SolverSettings, Substeps};
+use unipbd_validation::report::{Entry, sheet};
 use unipbd_validation::stress::{Ending, NAMED, fuzz};
 use unipbd_validation::{cases, report};
 
@@ -98,4 +99,13 @@ fn random_scenes_end_sound_or_stop() {
         }
     });
     assert!(counts.broken.is_empty(), "{:?}", counts.broken);
+}
+
+#[test]
+fn the_sheet_has_a_row_for_every_figure() {
+    let entry = Entry::run(cases::find("drag").expect("the case exists"), 1, 0.01);
+    let figures = entry.result.as_ref().expect("the case runs").figures.len();
+    let text = sheet(&[entry], &[]);
+    assert_eq!(text.lines().filter(|line| line.starts_with("| 1 | 0.01 |")).count(), figures, "{text}");
+    assert!(text.contains("holds") && text.contains("## drag"), "{text}");
 }
