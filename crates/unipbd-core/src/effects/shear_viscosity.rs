@@ -154,12 +154,10 @@ impl Effect for ShearViscosity {
         // Viscosity makes nothing faster than the fastest (maximum principle). A heap crushed to many times
         // its density has larger eigenvalues than the stages can bear, and would be thrown otherwise.
         let square = now.parallelism.max(rows, |row| velocities[row].length_squared());
-        let fastest = square.max(now.walls.fastest_squared());
+        let fastest = square.max(now.walls.fastest_squared()).sqrt();
         let result = &self.now;
         now.parallelism.update(&mut out.velocity, |row, change| {
-            let square = result[row].length_squared();
-            let bounded = if square > fastest { result[row] * (fastest / square).sqrt() } else { result[row] };
-            *change += bounded - velocities[row];
+            *change += result[row].clamp_length_max(fastest) - velocities[row]
         });
     }
 }

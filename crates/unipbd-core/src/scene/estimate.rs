@@ -1,14 +1,12 @@
 //! What a scene would cost, without building it.
 
 use super::layout::{block_counts, disc_count};
-use super::{Emitter, Profile, Scene, Substeps};
+use super::{Emitter, Profile, Scene, SubstepLaw, Substeps};
 
 /// Memory per particle [byte]: columns, multipliers and about 20 stored neighbours.
 pub const BYTES_PER_PARTICLE: u64 = 300;
 /// Rough time per particle and substep on one core [s].
 pub const SECONDS_PER_PARTICLE_AND_SUBSTEP: f64 = 60e-9;
-/// Largest distance a particle may move in a substep, in spacings.
-const COURANT: f64 = 0.4;
 
 /// What a scene would cost. Upper bounds where the run decides: throttled emitters emit less, and
 /// gas may be removed before its lifetime is over.
@@ -150,19 +148,10 @@ fn changes(scene: &Scene) -> Vec<Change> {
     changes
 }
 
-/// Substeps per frame for the speeds and depths at the start: the larger of the Courant condition,
-/// the trust region (compression below 0.2 within a substep) and the accuracy target, where
-/// C_max = (D/omega) P dt^2/dx^2 with P the largest pressure over density. The same rule as
-/// [`SubstepRule`](crate::step::SubstepRule), which a description must not depend on; a test holds them
-/// together.
+/// Substeps per frame for the speeds and depths at the start.
 fn automatic_substeps(scene: &Scene) -> u32 {
-    let frame = 1.0 / scene.fps;
-    let pressure = pressure_over_density(scene);
-    let courant = frame * largest_speed(scene) / (COURANT * scene.spacing);
-    let trust = 2.0 * frame * pressure.sqrt() / scene.spacing;
-    let accuracy =
-        frame / scene.spacing * (scene.solver.compressibility() * pressure / scene.solver.target_compression).sqrt();
-    let count = courant.max(trust).max(accuracy).ceil().max(1.0);
+    let wanted = SubstepLaw::new(scene).wanted(1.0 / scene.fps, largest_speed(scene), pressure_over_density(scene));
+    let count = wanted.into_iter().fold(1.0, f64::max).ceil();
     (count as u32).min(scene.solver.max_substeps)
 }
 

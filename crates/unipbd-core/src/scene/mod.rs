@@ -19,6 +19,7 @@ mod ropes;
 mod settings;
 mod shorthand;
 mod sources;
+mod substeps;
 mod validate;
 mod walls;
 mod waves;
@@ -42,4 +43,5 @@ pub use walls::{HalfPlane, Obstacle, Side, Slip, Tank};
 pub use waves::Wave;
 
 pub(crate) use layout::{block_points, disc_points};
+pub(crate) use substeps::SubstepLaw;
 pub(crate) use validate::FARTHEST;

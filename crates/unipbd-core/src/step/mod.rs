@@ -1,6 +1,7 @@
 //! The solver loop. `pipeline.rs` is the page to read first: the stages of a substep and when they run.
 
 mod access;
+mod demand;
 mod diagnose;
 mod error;
 mod integrate;

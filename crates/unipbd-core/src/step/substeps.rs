@@ -1,10 +1,8 @@
 //! How many substeps a frame takes, and why.
 
 use crate::observe::SubstepReason;
-use crate::scene::{Scene, Substeps};
+use crate::scene::{Scene, SubstepLaw, Substeps};
 
-/// Way per substep, in spacings, that the Courant-Friedrichs-Lewy condition allows.
-const COURANT: f64 = 0.4;
 /// Height of a stack of bodies that one substep per frame can carry.
 const BODIES_PER_SUBSTEP: f64 = 2.5;
 /// The number of substeps stays while at least this part of it is wanted, and falls no faster: each
@@ -27,10 +25,7 @@ pub struct Demand {
 pub struct SubstepRule {
     substeps: Substeps,
     cap: u32,
-    target: f64,
-    spacing: f64,
-    /// D/omega of the law C_max = (D/omega) P dt^2/dx^2.
-    error: f64,
+    law: SubstepLaw,
 }
 
 /// The choice for one frame.
@@ -50,9 +45,7 @@ impl SubstepRule {
         SubstepRule {
             substeps: scene.solver.substeps,
             cap: scene.solver.max_substeps.max(1),
-            target: scene.solver.target_compression,
-            spacing: scene.spacing,
-            error: scene.solver.compressibility(),
+            law: SubstepLaw::new(scene),
         }
     }
 
@@ -79,14 +72,13 @@ impl SubstepRule {
         }
     }
 
-    /// The largest of four demands: the height of stacks, speed (CFL), trust region (the compression
-    /// within one substep stays below 0.2), and the target compression.
+    /// The largest of four demands: speed, trust region, target compression, and the height of stacks.
     fn wanted(&self, frame: f64, demand: Demand) -> (f64, SubstepReason) {
-        let root = (demand.pressure / self.target * self.error).sqrt();
+        let [speed, trust, compression] = self.law.wanted(frame, demand.speed, demand.pressure);
         let demands = [
-            (frame * demand.speed / (COURANT * self.spacing), SubstepReason::Speed),
-            (2.0 * frame * demand.pressure.sqrt() / self.spacing, SubstepReason::TrustRegion),
-            (frame / self.spacing * root, SubstepReason::Compression),
+            (speed, SubstepReason::Speed),
+            (trust, SubstepReason::TrustRegion),
+            (compression, SubstepReason::Compression),
             (demand.chain / BODIES_PER_SUBSTEP, SubstepReason::Support),
         ];
         demands.into_iter().fold((0.0, SubstepReason::Compression), |a, b| if b.0 > a.0 { b } else { a })

@@ -40,13 +40,13 @@ pub struct DensityMaterial {
     pub gate: Real,
     /// Floor of the denominator [1/(kg m^2)]: keeps thin places from being thrown about.
     pub response_min: Real,
-    /// Mass of a particle whose pressure is limited [kg]; 0 where it is not.
-    pub limited_mass: Real,
-    /// Added to the denominator: constraint force mixing [1/(kg m^2)].
-    pub mixing: Real,
     /// The same for particles moved by a script, whose own response is missing from the denominator: what
     /// they barely touch must not be thrown [1/(kg m^2)].
     pub scripted_response_min: Real,
+    /// Added to the denominator: constraint force mixing [1/(kg m^2)].
+    pub mixing: Real,
+    /// Mass of a particle [kg]: times the pressure limit it bounds the multiplier.
+    pub mass: Real,
     /// Repulsion strength; the product of two, times an inverse mass, is the part of its overlap that
     /// a pair gives back per substep [kg^1/2].
     pub repulsion: Real,
@@ -97,51 +97,44 @@ impl DensityMaterial {
         // The lightest sets the force of a pair: it gives back the full part, a heavier one less.
         let two_sided = scene.materials().filter(|material| material.is_two_sided());
         let lightest = two_sided.map(|material| material.particle_mass(scene.spacing)).fold(f64::INFINITY, f64::min);
-        let mixing = real(scene.solver.constraint_mixing * rest_response / mass);
-        let filled = real(scene.solver.relaxation_of_filled());
-        match material.phase() {
-            Phase::Liquid if material.is_two_sided() => DensityMaterial {
-                relaxation: filled,
-                multiplier_min: Real::NEG_INFINITY,
-                gate: Real::NEG_INFINITY,
-                response_min: real(GAS_RESPONSE_FLOOR * rest_response / mass),
-                scripted_response_min: real(SCRIPTED_RESPONSE_FLOOR * rest_response / mass),
-                mixing,
-                limited_mass: real(mass),
-                repulsion: real((GAS_REPULSION * lightest).sqrt()),
-            },
-            Phase::Liquid => DensityMaterial {
-                mixing,
-                limited_mass: real(mass),
-                relaxation: real(scene.solver.relaxation_of_liquids()),
-                multiplier_min: 0.0,
-                gate: Real::NEG_INFINITY,
-                response_min: real(1e-6 * rest_response / mass),
-                scripted_response_min: real(SCRIPTED_RESPONSE_FLOOR * rest_response / mass),
-                repulsion: 0.0,
-            },
-            Phase::Gas => DensityMaterial {
-                mixing,
-                limited_mass: real(mass),
-                relaxation: filled,
-                multiplier_min: Real::NEG_INFINITY,
-                gate: real(GAS_GATE),
-                response_min: real(GAS_RESPONSE_FLOOR * rest_response / mass),
-                scripted_response_min: real(SCRIPTED_RESPONSE_FLOOR * rest_response / mass),
-                repulsion: real((GAS_REPULSION * lightest).sqrt()),
-            },
-            Phase::Smoke | Phase::Rigid | Phase::Solid => DensityMaterial {
-                mixing: 0.0,
-                limited_mass: 0.0,
-                relaxation: 0.0,
-                multiplier_min: 0.0,
-                gate: Real::NEG_INFINITY,
-                response_min: 1.0,
-                scripted_response_min: 1.0,
-                repulsion: 0.0,
-            },
+        if !material.phase().is_fluid() {
+            return DensityMaterial::NONE;
+        }
+        let response = rest_response / mass;
+        let one_sided = DensityMaterial {
+            relaxation: real(scene.solver.relaxation_of_liquids()),
+            multiplier_min: 0.0,
+            gate: Real::NEG_INFINITY,
+            response_min: real(1e-6 * response),
+            scripted_response_min: real(SCRIPTED_RESPONSE_FLOOR * response),
+            mixing: real(scene.solver.constraint_mixing * response),
+            mass: real(mass),
+            repulsion: 0.0,
+        };
+        if !material.is_two_sided() {
+            return one_sided;
+        }
+        DensityMaterial {
+            relaxation: real(scene.solver.relaxation_of_filled()),
+            multiplier_min: Real::NEG_INFINITY,
+            gate: if material.phase() == Phase::Gas { real(GAS_GATE) } else { Real::NEG_INFINITY },
+            response_min: real(GAS_RESPONSE_FLOOR * response),
+            repulsion: real((GAS_REPULSION * lightest).sqrt()),
+            ..one_sided
         }
     }
+
+    /// A material without a density constraint.
+    const NONE: DensityMaterial = DensityMaterial {
+        relaxation: 0.0,
+        multiplier_min: 0.0,
+        gate: Real::NEG_INFINITY,
+        response_min: 1.0,
+        scripted_response_min: 1.0,
+        mixing: 0.0,
+        mass: 0.0,
+        repulsion: 0.0,
+    };
 }
 
 /// Distances at which a repulsion begins and grows no more.

@@ -83,11 +83,10 @@ impl Density {
         let rows = now.particles.listed();
         // The pressures that are believed accelerate to this speed at most (Bernoulli): what a step too
         // long for them makes of a crushed heap ends there.
-        let farthest = 2.0 * now.pressure_limit * now.dt * now.dt;
+        let farthest = (2.0 * now.pressure_limit).sqrt() * now.dt;
         now.parallelism.update(&mut out.displacements_mut()[..rows], |i, displacement| {
             let step = inverse_masses[i] * (sums[i] * volume + walls[i] * steps[i]);
-            let square = step.length_squared();
-            *displacement -= if square > farthest { step * (farthest / square).sqrt() } else { step };
+            *displacement -= step.clamp_length_max(farthest);
         });
     }
 
@@ -257,6 +256,6 @@ impl DensityMaterial {
         let floor = if inverse_mass == 0.0 { self.scripted_response_min } else { self.response_min };
         let new = (old + self.relaxation * error / (response.max(floor) + self.mixing)).max(least);
         // What is squeezed in with no way out must not push harder the shorter the substep is.
-        if self.limited_mass > 0.0 { new.clamp(-limit * self.limited_mass, limit * self.limited_mass) } else { new }
+        new.clamp(-limit * self.mass, limit * self.mass)
     }
 }
