@@ -4,7 +4,7 @@ use cpu_time::ProcessTime;
 
 use rapier2d::prelude::*;
 use unipbd_core::BuildOptions;
-use unipbd_core::scene::{BodyDescription, HalfPlane, Scene, Slip, SolverSettings, Substeps, Tank};
+use unipbd_core::scene::{BodyDescription, HalfPlane, Scene, SolverSettings, Substeps, Tank};
 
 /// Side of a box and diameter of a disc [m].
 const SIZE: f64 = 0.5;
@@ -60,7 +60,7 @@ fn body(kind: Kind, position: [f64; 2]) -> BodyDescription {
 }
 
 fn floor() -> HalfPlane {
-    HalfPlane { point: [0.0, 0.0], normal: [0.0, 1.0], velocity: [0.0, 0.0], friction: 0.5, slip: Slip::default() }
+    HalfPlane { friction: 0.5, ..HalfPlane::new([0.0, 0.0], [0.0, 1.0]) }
 }
 
 fn ours(kind: Kind, places: &[[f64; 2]], width: Option<f64>, substeps: u32) -> unipbd_core::Solver {

@@ -1,8 +1,6 @@
 //! Scenes that several cases share. dx = 0.1 m and g = 9.81 m/s^2 unless a case says otherwise.
 
-use unipbd_core::scene::{
-    Block, BodyDescription, Emitter, HalfPlane, Liquid, Profile, Scene, Slip, SolverSettings, Tank,
-};
+use unipbd_core::scene::{Block, BodyDescription, Emitter, HalfPlane, Liquid, Profile, Scene, SolverSettings, Tank};
 
 /// Spacing of the free-surface cases [m].
 pub const SPACING: f64 = 0.1;
@@ -24,14 +22,7 @@ pub fn pool(size: (f64, f64), width: f64, solver: &SolverSettings) -> Scene {
 
 /// A floor with this friction.
 pub fn floor(friction: f64) -> HalfPlane {
-    HalfPlane {
-        name: String::new(),
-        point: [0.0, 0.0],
-        normal: [0.0, 1.0],
-        velocity: [0.0; 2],
-        friction,
-        slip: Slip::Free,
-    }
+    HalfPlane { friction, ..HalfPlane::new([0.0, 0.0], [0.0, 1.0]) }
 }
 
 /// A body with an outline of its own to be set, and a name.

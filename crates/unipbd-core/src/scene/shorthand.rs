@@ -1,6 +1,6 @@
 //! Short ways to write scenes in Rust.
 
-use super::{Block, BodyDescription, Liquid, RotationRule, Side, Slip, Smoke, Tank};
+use super::{Block, BodyDescription, HalfPlane, Liquid, RotationRule, Side, Slip, Smoke, Tank};
 use crate::bodies::BodyKind;
 
 impl Liquid {
@@ -21,6 +21,13 @@ impl Block {
     /// A rectangle of a material at rest, from its lower left to its upper right corner [m].
     pub fn new(material: &str, min: [f64; 2], max: [f64; 2]) -> Self {
         Block { material: material.to_owned(), min, max, velocity: [0.0; 2], jitter: 0.0, temperature: 0.0 }
+    }
+}
+
+impl HalfPlane {
+    /// A wall at rest through a point [m], without friction; the normal points towards the particles.
+    pub fn new(point: [f64; 2], normal: [f64; 2]) -> Self {
+        HalfPlane { name: String::new(), point, normal, velocity: [0.0; 2], friction: 0.0, slip: Slip::Free }
     }
 }
 

@@ -129,12 +129,9 @@ fn channel_scene(resolution: u32, drive: Drive, solver: &SolverSettings) -> Scen
     let spacing = 1.0 / f64::from(resolution);
     let length = 16.0 * spacing;
     let wall = |y: f64, normal: f64, speed: f64| HalfPlane {
-        name: String::new(),
-        point: [0.0, y],
-        normal: [0.0, normal],
         velocity: [speed, 0.0],
-        friction: 0.0,
         slip: Slip::None,
+        ..HalfPlane::new([0.0, y], [0.0, normal])
     };
     let (lid, force) = match drive {
         Drive::Lid => (SPEED, 0.0),
