@@ -10,7 +10,7 @@ use unipbd_benches::Lattice;
 use unipbd_core::neighbors::{Grid, NeighborList, Periodic};
 use unipbd_core::parallel::Parallelism;
 use unipbd_core::simd::{
-    DensityInput, DensityOutput, Pairs, Reach, Weights, WendlandC2, correction, density, difference_gradient,
+    DensityInput, DensityOutput, Pairs, Reach, Records, Weights, WendlandC2, correction, density, difference_gradient,
     laplacian, repulsion, vorticity, xsph, xsph_mixed,
 };
 use unipbd_core::{Real, Vector};
@@ -28,6 +28,7 @@ fn passes(criterion: &mut Criterion) {
         let (mut vectors, mut a, mut b) = (vec![Vector::ZERO; rows], vec![0.0; rows], vec![0.0; rows]);
         let traits: Vec<_> = set.field.iter().map(|&value| Vector::new(0.1, 1.0 + value)).collect();
         let one = Weights::Uniform(1.0);
+        let [mut r1, mut r2, mut r3, mut r4] = std::array::from_fn(|_| Records::default());
         let mut group = criterion.benchmark_group("passes");
         group.throughput(Throughput::Elements(rows as u64));
         let mut bench = |name: &str, work: &mut dyn FnMut(&mut [Vector], &mut [Real])| {
@@ -37,10 +38,10 @@ fn passes(criterion: &mut Criterion) {
             let input = DensityInput { positions: &set.x, gradient_positions: None, weights: one };
             density(pairs, kernel, input, DensityOutput { value, gradient, response: &mut b });
         });
-        bench("correction", &mut |out, _| correction(pairs, kernel, &set.x, &set.field, out));
-        bench("xsph", &mut |out, _| xsph(pairs, kernel, &set.x, &set.v, one, out));
-        bench("xsph_mixed", &mut |out, _| xsph_mixed(pairs, kernel, &set.x, &set.v, &traits, out));
-        bench("vorticity", &mut |_, out| vorticity(pairs, kernel, &set.x, &set.v, out));
+        bench("correction", &mut |out, _| correction(pairs, kernel, &set.x, &set.field, &mut r1, out));
+        bench("xsph", &mut |out, _| xsph(pairs, kernel, &set.x, &set.v, one, &mut r2, out));
+        bench("xsph_mixed", &mut |out, _| xsph_mixed(pairs, kernel, &set.x, &set.v, &traits, &mut r3, out));
+        bench("vorticity", &mut |_, out| vorticity(pairs, kernel, &set.x, &set.v, &mut r4, out));
         bench("gradient", &mut |out, _| difference_gradient(pairs, kernel, &set.x, &set.field, out));
         bench("laplacian", &mut |_, out| laplacian(pairs, kernel, &set.x, &set.field, one, out));
         bench("repulsion", &mut |out, _| repulsion(pairs, Reach { full: 0.5, none: 0.8 }, &set.x, one, out));

@@ -10,8 +10,8 @@ use std::time::Instant;
 use unipbd_core::neighbors::{Grid, NeighborList, Periodic};
 use unipbd_core::parallel::Parallelism::{self, Pool, Serial};
 use unipbd_core::simd::{
-    DensityInput, DensityOutput, Level, Pairs, Reach, Weights, WendlandC2, correction, density, difference_gradient,
-    laplacian, repulsion, vorticity, xsph, xsph_mixed,
+    DensityInput, DensityOutput, Level, Pairs, Reach, Records, Weights, WendlandC2, correction, density,
+    difference_gradient, laplacian, repulsion, vorticity, xsph, xsph_mixed,
 };
 use unipbd_core::{Real, Vector};
 
@@ -153,6 +153,7 @@ fn pass_entries<'a>(case: &'a Case, level: Level, parallelism: Parallelism, tag:
     let (mut h, mut m) = (g.clone(), g.clone());
     let traits: Vec<_> = case.field.iter().map(|&value| Vector::new(0.1, 1.0 + value)).collect();
     let one = Weights::Uniform(1.0);
+    let [mut r1, mut r2, mut r3, mut r4] = std::array::from_fn(|_| Records::default());
     let input = DensityInput { positions: &case.x, gradient_positions: None, weights: one };
     let split =
         DensityInput { gradient_positions: Some(&case.v), weights: Weights::Column(&case.field), positions: &case.x };
@@ -163,10 +164,12 @@ fn pass_entries<'a>(case: &'a Case, level: Level, parallelism: Parallelism, tag:
         timed(format!("density s+w  {tag}"), move || {
             density(pairs, kernel, split, DensityOutput { value: &mut e, gradient: &mut h, response: &mut f });
         }),
-        timed(format!("correction   {tag}"), move || correction(pairs, kernel, &case.x, &case.field, &mut g1)),
-        timed(format!("xsph         {tag}"), move || xsph(pairs, kernel, &case.x, &case.v, one, &mut g2)),
-        timed(format!("xsph mixed   {tag}"), move || xsph_mixed(pairs, kernel, &case.x, &case.v, &traits, &mut m)),
-        timed(format!("vorticity    {tag}"), move || vorticity(pairs, kernel, &case.x, &case.v, &mut c)),
+        timed(format!("correction   {tag}"), move || correction(pairs, kernel, &case.x, &case.field, &mut r1, &mut g1)),
+        timed(format!("xsph         {tag}"), move || xsph(pairs, kernel, &case.x, &case.v, one, &mut r2, &mut g2)),
+        timed(format!("xsph mixed   {tag}"), move || {
+            xsph_mixed(pairs, kernel, &case.x, &case.v, &traits, &mut r3, &mut m)
+        }),
+        timed(format!("vorticity    {tag}"), move || vorticity(pairs, kernel, &case.x, &case.v, &mut r4, &mut c)),
         timed(format!("gradient     {tag}"), move || {
             difference_gradient(pairs, kernel, &case.x, &case.field, &mut g3);
         }),

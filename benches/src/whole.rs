@@ -2,7 +2,7 @@
 
 use unipbd_core::neighbors::{Grid, NeighborList, Periodic};
 use unipbd_core::parallel::Parallelism;
-use unipbd_core::simd::{DensityInput, DensityOutput, Pairs, Weights, WendlandC2, correction, density, xsph};
+use unipbd_core::simd::{DensityInput, DensityOutput, Pairs, Records, Weights, WendlandC2, correction, density, xsph};
 use unipbd_core::{Real, Vector};
 
 /// Density iterations per step.
@@ -17,6 +17,7 @@ pub struct Step {
     value: Vec<Real>,
     response: Vec<Real>,
     gradient: Vec<Vector>,
+    records: Records,
     out: Vec<Vector>,
 }
 
@@ -32,6 +33,7 @@ impl Step {
             value: numbers.clone(),
             response: numbers,
             gradient: vectors.clone(),
+            records: Records::default(),
             out: vectors,
         }
     }
@@ -47,9 +49,9 @@ impl Step {
             let input = DensityInput { positions: &self.x, gradient_positions: None, weights: Weights::Uniform(1.0) };
             let (value, gradient, response) = (&mut self.value[..], &mut self.gradient[..], &mut self.response[..]);
             density(pairs, kernel, input, DensityOutput { value, gradient, response });
-            correction(pairs, kernel, &self.x, &self.value, &mut self.out);
+            correction(pairs, kernel, &self.x, &self.value, &mut self.records, &mut self.out);
         }
-        xsph(pairs, kernel, &self.x, v, Weights::Uniform(1.0), &mut self.out);
+        xsph(pairs, kernel, &self.x, v, Weights::Uniform(1.0), &mut self.records, &mut self.out);
     }
 }
 

@@ -122,7 +122,8 @@ impl Parallelism {
 
     /// Largest `value(row)`, or negative infinity without rows. NaN is passed over.
     pub fn max(self, rows: usize, value: impl Fn(usize) -> Real + Sync) -> Real {
-        self.reduce(rows, |range| range.map(&value).fold(Real::NEG_INFINITY, Real::max), Real::max)
+        let larger = |a: Real, b: Real| if b > a { b } else { a };
+        self.reduce(rows, |range| range.map(&value).fold(Real::NEG_INFINITY, larger), larger)
     }
 
     /// Sum of `value(row)` in double precision, in an order that depends on nothing but `rows`.

@@ -5,7 +5,7 @@ use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering};
 use unipbd_core::neighbors::{Grid, Periodic, SkinList};
 use unipbd_core::parallel::Parallelism;
-use unipbd_core::simd::{Pairs, WendlandC2, correction};
+use unipbd_core::simd::{Pairs, Records, WendlandC2, correction};
 use unipbd_core::{Real, Vector};
 
 struct Counting;
@@ -35,13 +35,14 @@ fn steady_steps_allocate_nothing() {
     let far: Vec<_> = points.iter().map(|&x| if x.x == 0.0 { x - Vector::splat(1e6) } else { x }).collect();
     let (mut grid, mut list) = (Grid::new(Periodic::NONE), SkinList::default());
     let mut sorted = vec![Vector::ZERO; rows];
+    let mut records = Records::default();
     let (multipliers, mut out) = (vec![1.0; rows], vec![Vector::ZERO; rows]);
     let mut step = |points: &[Vector], rows: usize| {
         let order = grid.order(points, rows, SkinList::list_radius(2.0, 0.1), Parallelism::Serial);
         Parallelism::Serial.gather(&mut sorted, points, order);
         list.build(&grid, &sorted, 2.0, 0.1, Parallelism::Serial);
         let pairs = Pairs::new(list.list(), Periodic::NONE, Parallelism::Serial);
-        correction(pairs, WendlandC2::new(2.0), &sorted, &multipliers, &mut out[..rows]);
+        correction(pairs, WendlandC2::new(2.0), &sorted, &multipliers, &mut records, &mut out[..rows]);
         assert!(!list.needs_rebuild(&grid, &sorted, rows, Parallelism::Serial));
     };
     let mut all = || {

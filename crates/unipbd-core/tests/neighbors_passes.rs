@@ -4,8 +4,8 @@
 use unipbd_core::neighbors::{Grid, NeighborList, Periodic, PeriodicAxis};
 use unipbd_core::parallel::Parallelism;
 use unipbd_core::simd::{
-    CubicSpline, DensityInput, DensityOutput, Level, Mixed, Pairs, Poly6, Reach, Shape, Spiky, Weights, WendlandC2,
-    correction, density, difference_gradient, laplacian, repulsion, vorticity, xsph, xsph_mixed,
+    CubicSpline, DensityInput, DensityOutput, Level, Mixed, Pairs, Poly6, Reach, Records, Shape, Spiky, Weights,
+    WendlandC2, correction, density, difference_gradient, laplacian, repulsion, vorticity, xsph, xsph_mixed,
 };
 use unipbd_core::{Real, Vector};
 
@@ -92,19 +92,19 @@ fn all_passes(set: &Set, kernel: WendlandC2, level: Level, parallelism: Parallel
         }
         repulsion(pairs, Reach { full: 0.3, none: 0.8 }, &set.x, weights, &mut g);
         results.push(("repulsion", flat(&g)));
-        xsph(pairs, kernel, &set.x, &set.v, weights, &mut g);
+        xsph(pairs, kernel, &set.x, &set.v, weights, &mut Records::default(), &mut g);
         results.push(("xsph", flat(&g)));
         laplacian(pairs, kernel, &set.x, &set.field, weights, &mut a);
         results.push(("laplacian", a.clone()));
     }
-    correction(pairs, kernel, &set.x, &set.field, &mut g);
+    correction(pairs, kernel, &set.x, &set.field, &mut Records::default(), &mut g);
     results.push(("correction", flat(&g)));
-    vorticity(pairs, kernel, &set.x, &set.v, &mut a);
+    vorticity(pairs, kernel, &set.x, &set.v, &mut Records::default(), &mut a);
     results.push(("vorticity", a.clone()));
     difference_gradient(pairs, kernel, &set.x, &set.field, &mut g);
     results.push(("difference gradient", flat(&g)));
     let traits = traits(set);
-    xsph_mixed(pairs, kernel, &set.x, &set.v, &traits, &mut g);
+    xsph_mixed(pairs, kernel, &set.x, &set.v, &traits, &mut Records::default(), &mut g);
     results.push(("xsph mixed", flat(&g)));
     results
 }
@@ -145,7 +145,7 @@ fn every_kernel_gives_the_bits_of_the_scalar_form() {
             let mut out = vec![0.0; 300];
             laplacian(pairs, kernel, &set.x, &set.field, Weights::Uniform(1.0), &mut out);
             let mut mean = vec![Vector::ZERO; 300];
-            xsph(pairs, kernel, &set.x, &set.v, Weights::Uniform(1.0), &mut mean);
+            xsph(pairs, kernel, &set.x, &set.v, Weights::Uniform(1.0), &mut Records::default(), &mut mean);
             vec![("laplacian", out), ("xsph", mean.iter().flat_map(|v| [v.x, v.y]).collect())]
         });
     }
@@ -277,14 +277,14 @@ fn mixed_viscosity_keeps_momentum_and_drags_nothing_moved_by_a_script() {
         (0..300).map(|row| Vector::new(0.5 + set.weights[row].abs(), 0.5 + set.field[row].abs())).collect();
     let mut change = vec![Vector::ZERO; 300];
     let pairs = set.pairs(Level::best(), Parallelism::Serial);
-    xsph_mixed(pairs, kernel(), &set.x, &set.v, &traits, &mut change);
+    xsph_mixed(pairs, kernel(), &set.x, &set.v, &traits, &mut Records::default(), &mut change);
     let momentum: Vector = (0..300).map(|row| change[row] / traits[row].y).sum();
     let size: Real = (0..300).map(|row| change[row].length() / traits[row].y).sum();
     assert!(momentum.length() < 1e-5 * size, "{momentum} of {size}");
 
     let scripted: Vec<_> =
         traits.iter().enumerate().map(|(row, t)| Vector::new(t.x, if row % 5 == 0 { 0.0 } else { t.y })).collect();
-    xsph_mixed(pairs, kernel(), &set.x, &set.v, &scripted, &mut change);
+    xsph_mixed(pairs, kernel(), &set.x, &set.v, &scripted, &mut Records::default(), &mut change);
     assert!(change.iter().step_by(5).all(|change| *change == Vector::ZERO));
     assert!(change.iter().all(|change| change.is_finite()) && change[1] != Vector::ZERO);
 }
@@ -296,7 +296,7 @@ fn corrections_and_repulsion_push_both_of_a_pair_alike() {
     let mut out = vec![Vector::ZERO; 600];
     let total = |out: &[Vector]| out.iter().fold(Vector::ZERO, |sum, &v| sum + v).length();
     let size = |out: &[Vector]| out.iter().map(|v| v.length()).sum::<Real>();
-    correction(pairs, kernel(), &set.x, &set.field, &mut out);
+    correction(pairs, kernel(), &set.x, &set.field, &mut Records::default(), &mut out);
     assert!(total(&out) < 1e-5 * size(&out));
     repulsion(pairs, Reach { full: 0.3, none: 0.8 }, &set.x, Weights::Column(&set.weights), &mut out);
     out.iter_mut().zip(&set.weights).for_each(|(v, &s)| *v *= s);
@@ -309,5 +309,12 @@ fn corrections_and_repulsion_push_both_of_a_pair_alike() {
 fn short_columns_are_refused() {
     let set = Set::random(100, Periodic::NONE);
     let mut out = vec![Vector::ZERO; 100];
-    correction(set.pairs(Level::best(), Parallelism::Serial), WendlandC2::new(2.5), &set.x[..99], &set.field, &mut out);
+    correction(
+        set.pairs(Level::best(), Parallelism::Serial),
+        WendlandC2::new(2.5),
+        &set.x[..99],
+        &set.field,
+        &mut Records::default(),
+        &mut out,
+    );
 }

@@ -3,7 +3,7 @@ use crate::constraints::Substep;
 use crate::kernel::Kernel;
 use crate::math::{Real, Vector, real};
 use crate::scene::Scene;
-use crate::simd;
+use crate::simd::{self, Records};
 
 /// Part of the mean vorticity per spacing below which its gradient has no clear direction.
 const SOFTENING: Real = 0.02;
@@ -18,6 +18,7 @@ pub struct VorticityConfinement {
     vorticity: Vec<Real>,
     size: Vec<Real>,
     gradient: Vec<Vector>,
+    records: Records,
 }
 
 impl VorticityConfinement {
@@ -32,6 +33,7 @@ impl VorticityConfinement {
             vorticity: Vec::new(),
             size: Vec::new(),
             gradient: Vec::new(),
+            records: Records::default(),
         })
     }
 
@@ -44,7 +46,8 @@ impl VorticityConfinement {
         self.size[rows..].fill(0.0);
         self.gradient.resize(rows, Vector::ZERO);
         let (positions, velocities) = (now.particles.positions(), now.particles.velocities());
-        simd::vorticity(now.pairs(), self.kernel.shape(), positions, velocities, &mut self.vorticity);
+        let (shape, records) = (self.kernel.shape(), &mut self.records);
+        simd::vorticity(now.pairs(), shape, positions, velocities, records, &mut self.vorticity);
         let (vorticity, volume) = (&mut self.vorticity, self.volume);
         now.parallelism.update(vorticity, |_, vorticity| *vorticity *= volume);
         let vorticity = &self.vorticity;

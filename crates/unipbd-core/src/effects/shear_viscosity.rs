@@ -4,7 +4,7 @@ use crate::kernel::Kernel;
 use crate::math::{Real, Vector, real};
 use crate::phase::Phase;
 use crate::scene::{MaterialRef, Scene};
-use crate::simd::{self, SlopeAsValue, Weights};
+use crate::simd::{self, Records, SlopeAsValue, Weights};
 use crate::walls::Coverage;
 
 /// Most stages of one substep: stable up to 136 times the step of the explicit rule.
@@ -35,6 +35,7 @@ pub struct ShearViscosity {
     sums: Vec<Vector>,
     now: Vec<Vector>,
     before: Vec<Vector>,
+    records: Records,
 }
 
 impl ShearViscosity {
@@ -56,6 +57,7 @@ impl ShearViscosity {
                 sums: Vec::new(),
                 now: Vec::new(),
                 before: Vec::new(),
+                records: Records::default(),
             }
         })
     }
@@ -65,7 +67,7 @@ impl ShearViscosity {
         let particles = now.particles;
         let shape = SlopeAsValue(self.kernel.shape());
         let weights = Weights::Column(&self.weights);
-        simd::xsph(now.pairs(), shape, particles.positions(), &self.now, weights, &mut self.sums);
+        simd::xsph(now.pairs(), shape, particles.positions(), &self.now, weights, &mut self.records, &mut self.sums);
         let shear = now.walls.any_without_slip();
         let (weights, velocities, coverage) = (&self.weights, &self.now, &self.coverage);
         let (inverse_density, materials) = (&self.inverse_density, particles.materials());

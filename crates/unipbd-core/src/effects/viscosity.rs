@@ -3,7 +3,7 @@ use crate::constraints::Substep;
 use crate::kernel::Kernel;
 use crate::math::{Real, Vector, real};
 use crate::scene::{MaterialRef, Scene};
-use crate::simd::{self, Weights};
+use crate::simd::{self, Records, Weights};
 
 /// XSPH viscosity (Schechter & Bridson 2012; Macklin & Müller 2013, equation 17):
 /// v_i += c sum_j V (v_j - v_i) W_ij, with the reduced mass of each pair so that momentum is kept.
@@ -15,6 +15,7 @@ pub struct Viscosity {
     uniform: Option<Real>,
     /// Viscosity times volume, and inverse mass, by row.
     traits: Vec<Vector>,
+    records: Records,
 }
 
 impl Viscosity {
@@ -32,6 +33,7 @@ impl Viscosity {
             uniform: uniform(scene, &strength),
             strength,
             traits: Vec::new(),
+            records: Records::default(),
         })
     }
 }
@@ -60,7 +62,15 @@ impl Viscosity {
     fn apply_uniform(&mut self, now: Substep<'_>, strength: Real, out: &mut Changes) {
         let (positions, velocities) = (now.particles.positions(), now.particles.velocities());
         let weights = Weights::Uniform(self.volume * strength);
-        simd::xsph(now.pairs(), self.kernel.shape(), positions, velocities, weights, &mut out.velocity);
+        simd::xsph(
+            now.pairs(),
+            self.kernel.shape(),
+            positions,
+            velocities,
+            weights,
+            &mut self.records,
+            &mut out.velocity,
+        );
     }
 
     fn apply_mixed(&mut self, now: Substep<'_>, out: &mut Changes) {
@@ -71,6 +81,7 @@ impl Viscosity {
         now.parallelism
             .fill(traits, |row| Vector::new(self.volume * strength[usize::from(materials[row])], inverse_masses[row]));
         let (positions, velocities) = (particles.positions(), particles.velocities());
-        simd::xsph_mixed(now.pairs(), self.kernel.shape(), positions, velocities, &self.traits, &mut out.velocity);
+        let (traits, records) = (&self.traits, &mut self.records);
+        simd::xsph_mixed(now.pairs(), self.kernel.shape(), positions, velocities, traits, records, &mut out.velocity);
     }
 }

@@ -5,6 +5,7 @@
 //! from its reference and c any common drift, |d_i - d_j| <= 2 max |d - c|, so the list holds while
 //! 2 max |d - c| <= skin: a body of fluid that only travels needs no new list.
 
+use super::Periodic;
 use super::grid::{Cursor, Grid};
 use super::list::NeighborList;
 use crate::math::{Real, Vector};
@@ -16,32 +17,15 @@ use std::ops::Range;
 pub struct Motion {
     /// What they have in common [m].
     pub drift: Vector,
-    /// The largest distance of a displacement from the drift [m]; infinite where one is not a number.
+    /// No displacement is farther from the drift [m]; infinite where one is not a number.
     pub deviation: Real,
 }
 
 impl Motion {
     /// The motion from `from` to `to`, in a domain that repeats as `grid` does.
     pub fn between(from: &[Vector], to: &[Vector], grid: &Grid, parallelism: Parallelism) -> Motion {
-        assert_eq!(from.len(), to.len(), "columns of one particle set have one length");
-        let periodic = grid.periodic();
-        let moved = |row: usize| periodic.min_image(to[row] - from[row]);
-        let none = (Vector::splat(Real::INFINITY), Vector::splat(Real::NEG_INFINITY));
-        let (low, high) = parallelism.reduce(
-            from.len(),
-            |rows| rows.map(moved).fold(none, |(low, high), d| (low.min(d), high.max(d))),
-            |a, b| (a.0.min(b.0), a.1.max(b.1)),
-        );
-        if from.is_empty() {
-            return Motion::default();
-        }
-        // The middle of the displacements' bounding box: no other drift makes the deviation much smaller.
-        let drift = low * 0.5 + high * 0.5;
-        let distance = |row: usize| {
-            let square = (moved(row) - drift).length_squared();
-            if square.is_nan() { Real::INFINITY } else { square }
-        };
-        Motion { drift, deviation: parallelism.max(from.len(), distance).sqrt() }
+        let moves = Moves { from, to, periodic: grid.periodic(), parallelism };
+        moves.within(moves.bound())
     }
 
     /// This motion beside rows that do not move at all.
@@ -56,6 +40,131 @@ impl Motion {
         let rounding = 8.0 * Real::EPSILON * (self.drift.abs().max_element() + self.deviation);
         2.0 * (self.deviation + rounding)
     }
+}
+
+/// Rows at two moments.
+#[derive(Clone, Copy)]
+struct Moves<'a> {
+    from: &'a [Vector],
+    to: &'a [Vector],
+    periodic: Periodic,
+    parallelism: Parallelism,
+}
+
+impl Moves<'_> {
+    /// The middle of the displacements' bounding box, and half of its diagonal: no other drift makes the
+    /// deviation much smaller, and the true one is at most sqrt(2) times smaller than this.
+    fn bound(self) -> Motion {
+        assert_eq!(self.from.len(), self.to.len(), "columns of one particle set have one length");
+        if self.from.is_empty() {
+            return Motion::default();
+        }
+        let all = self.parallelism.reduce(
+            self.from.len(),
+            |rows| {
+                let mut spread = Spread::NONE;
+                self.each_four(rows, |moved| spread.add(moved));
+                spread
+            },
+            Spread::join,
+        );
+        let (low, high) = all.corners();
+        let (drift, half) = (low * 0.5 + high * 0.5, high * 0.5 - low * 0.5);
+        Motion { drift, deviation: if all.is_finite() { half.length() } else { Real::INFINITY } }
+    }
+
+    /// A bound, made exact by a second look at each row.
+    fn within(self, bound: Motion) -> Motion {
+        if bound.deviation == Real::INFINITY || self.from.is_empty() {
+            return bound;
+        }
+        let square = self.parallelism.reduce(
+            self.from.len(),
+            |rows| {
+                let mut largest = [0.0; GROUP];
+                self.each_four(rows, |moved| {
+                    for (largest, moved) in largest.iter_mut().zip(moved) {
+                        let square = (*moved - bound.drift).length_squared();
+                        *largest = if square > *largest { square } else { *largest };
+                    }
+                });
+                largest.into_iter().fold(0.0, Real::max)
+            },
+            Real::max,
+        );
+        Motion { deviation: square.sqrt(), ..bound }
+    }
+
+    /// Hands out the displacements of some rows, four at a time; the last ones are repeated to fill up.
+    #[inline(always)]
+    fn each_four(self, rows: Range<usize>, mut visit: impl FnMut(&[Vector; GROUP])) {
+        let (from, to) = (&self.from[rows.clone()], &self.to[rows]);
+        let moved = |from: Vector, to: Vector| match self.periodic.any() {
+            true => self.periodic.min_image(to - from),
+            false => to - from,
+        };
+        let (from_groups, from_rest) = from.as_chunks::<GROUP>();
+        let (to_groups, to_rest) = to.as_chunks::<GROUP>();
+        for (from, to) in from_groups.iter().zip(to_groups) {
+            visit(&std::array::from_fn(|k| moved(from[k], to[k])));
+        }
+        if let Some(last) = from_rest.len().checked_sub(1) {
+            visit(&std::array::from_fn(|k| moved(from_rest[k.min(last)], to_rest[k.min(last)])));
+        }
+    }
+}
+
+/// Displacements looked at side by side, so that they fill the vectors of the machine.
+const GROUP: usize = 4;
+
+/// The bounding box of displacements, gathered in four lanes.
+#[derive(Clone, Copy)]
+struct Spread {
+    low: [Vector; GROUP],
+    high: [Vector; GROUP],
+    /// Not a number where any displacement is infinite or not a number, else zero.
+    strange: [Vector; GROUP],
+}
+
+impl Spread {
+    const NONE: Spread = Spread {
+        low: [Vector::splat(Real::INFINITY); GROUP],
+        high: [Vector::splat(Real::NEG_INFINITY); GROUP],
+        strange: [Vector::ZERO; GROUP],
+    };
+
+    #[inline(always)]
+    fn add(&mut self, moved: &[Vector; GROUP]) {
+        for (k, &moved) in moved.iter().enumerate() {
+            self.low[k] = lower(moved, self.low[k]);
+            self.high[k] = -lower(-moved, -self.high[k]);
+            self.strange[k] += moved * 0.0;
+        }
+    }
+
+    fn join(self, other: Spread) -> Spread {
+        Spread {
+            low: std::array::from_fn(|k| lower(self.low[k], other.low[k])),
+            high: std::array::from_fn(|k| -lower(-self.high[k], -other.high[k])),
+            strange: std::array::from_fn(|k| self.strange[k] + other.strange[k]),
+        }
+    }
+
+    fn corners(&self) -> (Vector, Vector) {
+        let low = self.low.into_iter().reduce(lower).unwrap_or_default();
+        let high = self.high.into_iter().map(|high| -high).reduce(lower).unwrap_or_default();
+        (low, -high)
+    }
+
+    fn is_finite(&self) -> bool {
+        self.strange.iter().all(|strange| *strange == Vector::ZERO)
+    }
+}
+
+/// The smaller of each coordinate. (`Vector::min` also minds what is not a number, at four times the cost.)
+#[inline(always)]
+fn lower(a: Vector, b: Vector) -> Vector {
+    Vector::new(if a.x < b.x { a.x } else { b.x }, if a.y < b.y { a.y } else { b.y })
 }
 
 /// A neighbour list with its reference positions.
@@ -113,9 +222,13 @@ impl SkinList {
         self.builds += 1;
     }
 
-    /// How the particles have moved since the list was built. `positions` may have more rows than the list.
+    /// How the particles have moved since the list was built, as precisely as it takes to tell whether
+    /// the list [`covers`](Self::covers) it. `positions` may have more rows than the list.
     pub fn motion(&self, grid: &Grid, positions: &[Vector], parallelism: Parallelism) -> Motion {
-        Motion::between(&self.reference, &positions[..self.reference.len()], grid, parallelism)
+        let to = &positions[..self.reference.len()];
+        let moves = Moves { from: &self.reference, to, periodic: grid.periodic(), parallelism };
+        let bound = moves.bound();
+        if self.covers(&bound) { bound } else { moves.within(bound) }
     }
 
     /// Whether the list holds every pair within the radius after this motion. Where pairs are

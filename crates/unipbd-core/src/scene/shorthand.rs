@@ -1,6 +1,6 @@
 //! Short ways to write scenes in Rust.
 
-use super::{Block, BodyDescription, HalfPlane, Liquid, RotationRule, Side, Slip, Smoke, Tank};
+use super::{Block, BodyDescription, HalfPlane, Liquid, Obstacle, RotationRule, Side, Slip, Smoke, Tank};
 use crate::bodies::BodyKind;
 
 impl Liquid {
@@ -35,6 +35,13 @@ impl Tank {
     /// A container without friction, open at the top, from its lower left to its upper right corner [m].
     pub fn new(min: [f64; 2], max: [f64; 2]) -> Self {
         Tank { name: String::new(), min, max, open: vec![Side::Top], friction: 0.0, slip: Slip::Free }
+    }
+}
+
+impl Obstacle {
+    /// A solid rectangle without friction, from its lower left to its upper right corner [m].
+    pub fn new(min: [f64; 2], max: [f64; 2]) -> Self {
+        Obstacle { name: String::new(), min, max, friction: 0.0, slip: Slip::Free }
     }
 }
 

@@ -1,6 +1,7 @@
 //! Eight lanes of f32: what the lane forms of the passes are written in.
 #![allow(unsafe_code)]
 
+use super::records::Record;
 use super::shapes::Number;
 use crate::neighbors::LANES;
 use glam::Vec2;
@@ -55,6 +56,12 @@ pub(super) trait Lanes: Number {
     /// # Safety
     /// As for [`gather`](Self::gather).
     unsafe fn gather_vectors<E: Entry>(base: *const Vec2, column: &[E; LANES]) -> (Self, Self);
+
+    /// The coordinates of both vectors of the records at `base` plus each offset of a column.
+    ///
+    /// # Safety
+    /// As for [`gather`](Self::gather).
+    unsafe fn gather_records<E: Entry>(base: *const Record, column: &[E; LANES]) -> ((Self, Self), (Self, Self));
 
     /// Counts, ready to be compared.
     ///

@@ -11,6 +11,7 @@
 
 pub(crate) mod near;
 mod passes;
+mod records;
 mod shapes;
 pub(crate) mod space;
 pub(crate) mod weigh;
@@ -28,6 +29,7 @@ pub use passes::{
     DensityInput, DensityOutput, Pairs, Reach, Weights, correction, density, difference_gradient, laplacian, repulsion,
     vorticity, xsph, xsph_mixed,
 };
+pub use records::Records;
 pub use shapes::{Alternative, CubicSpline, Mixed, Number, Poly6, Shape, SlopeAsValue, Spiky, Tensile, WendlandC2};
 
 /// An instruction set that passes are compiled for.

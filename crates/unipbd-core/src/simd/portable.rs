@@ -2,6 +2,7 @@
 #![allow(unsafe_code)]
 
 use super::lanes::{Entry, Lanes};
+use super::records::Record;
 use super::shapes::Number;
 use crate::neighbors::LANES;
 use glam::Vec2;
@@ -65,6 +66,13 @@ impl Lanes for Portable {
         // SAFETY: as for `gather`.
         let vectors = column.map(|entry| unsafe { *base.offset(entry.offset()) });
         (Portable(vectors.map(|v| v.x)), Portable(vectors.map(|v| v.y)))
+    }
+    #[inline(always)]
+    unsafe fn gather_records<E: Entry>(base: *const Record, column: &[E; LANES]) -> ((Self, Self), (Self, Self)) {
+        // SAFETY: as for `gather`.
+        let records = column.map(|entry| unsafe { *base.offset(entry.offset()) });
+        let of = |which: usize| (Portable(records.map(|r| r[which].x)), Portable(records.map(|r| r[which].y)));
+        (of(0), of(1))
     }
     #[inline(always)]
     unsafe fn counts(counts: &[u32; LANES]) -> Self::Counts {

@@ -6,6 +6,7 @@
 #![allow(unsafe_code)]
 
 use super::lanes::{Entry, Lanes};
+use super::records::Record;
 use super::shapes::Number;
 use crate::neighbors::LANES;
 use glam::Vec2;
@@ -68,6 +69,27 @@ unsafe fn pair<E: Entry>(base: *const Vec2, low: E, high: E) -> __m128 {
     }
 }
 
+/// One record.
+///
+/// # Safety
+/// The place is a readable record.
+#[inline(always)]
+unsafe fn record<E: Entry>(base: *const Record, entry: E) -> __m128 {
+    // SAFETY: a record is four f32 without padding; the load asks for no alignment.
+    unsafe { _mm_loadu_ps(base.offset(entry.offset()).cast()) }
+}
+
+/// Four records as the four numbers of each.
+#[inline(always)]
+fn transposed([a, b, c, d]: [__m128; 4]) -> [__m128; 4] {
+    // SAFETY: SSE2 is in the baseline.
+    unsafe {
+        let (ab, cd) = (_mm_unpacklo_ps(a, b), _mm_unpacklo_ps(c, d));
+        let (ab_high, cd_high) = (_mm_unpackhi_ps(a, b), _mm_unpackhi_ps(c, d));
+        [_mm_movelh_ps(ab, cd), _mm_movehl_ps(cd, ab), _mm_movelh_ps(ab_high, cd_high), _mm_movehl_ps(cd_high, ab_high)]
+    }
+}
+
 impl Number for Sse2 {
     #[inline(always)]
     fn like(self, value: f32) -> Self {
@@ -123,6 +145,14 @@ impl Lanes for Sse2 {
                 Sse2(_mm_shuffle_ps::<0xdd>(a, b), _mm_shuffle_ps::<0xdd>(c, d)),
             )
         }
+    }
+    #[inline(always)]
+    unsafe fn gather_records<E: Entry>(base: *const Record, column: &[E; LANES]) -> ((Self, Self), (Self, Self)) {
+        // SAFETY: the caller vouches that all places lie within one slice.
+        let of = |k: usize| unsafe { record(base, column[k]) };
+        let (low, high) = (transposed([of(0), of(1), of(2), of(3)]), transposed([of(4), of(5), of(6), of(7)]));
+        let [x, y, u, v]: [Sse2; 4] = std::array::from_fn(|n| Sse2(low[n], high[n]));
+        ((x, y), (u, v))
     }
     #[inline(always)]
     unsafe fn counts(counts: &[u32; LANES]) -> Self::Counts {
@@ -211,6 +241,20 @@ impl Lanes for Avx2 {
             let first = joined(pair(base, column[0], column[1]), pair(base, column[4], column[5]));
             let second = joined(pair(base, column[2], column[3]), pair(base, column[6], column[7]));
             (Avx2(_mm256_shuffle_ps::<0x88>(first, second)), Avx2(_mm256_shuffle_ps::<0xdd>(first, second)))
+        }
+    }
+    #[inline(always)]
+    unsafe fn gather_records<E: Entry>(base: *const Record, column: &[E; LANES]) -> ((Self, Self), (Self, Self)) {
+        // SAFETY: the caller vouches for AVX2, and that all places lie within one slice.
+        unsafe {
+            let of = |low: usize, high: usize| joined(record(base, column[low]), record(base, column[high]));
+            // As `transposed`, in both halves: lanes 0-3 in the low ones, 4-7 in the high ones.
+            let (a, b, c, d) = (of(0, 4), of(1, 5), of(2, 6), of(3, 7));
+            let (ab, cd) = (_mm256_unpacklo_ps(a, b), _mm256_unpacklo_ps(c, d));
+            let first = (_mm256_shuffle_ps::<0x44>(ab, cd), _mm256_shuffle_ps::<0xee>(ab, cd));
+            let (ab, cd) = (_mm256_unpackhi_ps(a, b), _mm256_unpackhi_ps(c, d));
+            let second = (_mm256_shuffle_ps::<0x44>(ab, cd), _mm256_shuffle_ps::<0xee>(ab, cd));
+            ((Avx2(first.0), Avx2(first.1)), (Avx2(second.0), Avx2(second.1)))
         }
     }
     #[inline(always)]

@@ -27,16 +27,14 @@ pub(super) fn predict(particles: &mut Particles, forces: &[BodyForce], dt: Real,
     let (material, phase, inverse_mass) = (&particles.material, &particles.phase, &particles.inverse_mass);
     let (temperature, acceleration) = (&particles.temperature, &particles.acceleration);
     let remainder = &particles.remainder;
-    let pulled = |row: usize, mut velocity: Vector| {
-        if inverse_mass[row] > 0.0 {
-            let force = &forces[usize::from(material[row])];
-            let factor = if force.thermal { temperature[row] } else { 1.0 };
-            velocity += force.acceleration * (factor * dt);
-            if let Some(&acceleration) = acceleration.get(row) {
-                velocity += acceleration * dt;
-            }
+    let pull = |row: usize| {
+        let force = &forces[usize::from(material[row])];
+        let factor = if force.thermal { temperature[row] } else { 1.0 };
+        let pull = force.acceleration * (factor * dt);
+        match acceleration.get(row) {
+            Some(&acceleration) => pull + acceleration * dt,
+            None => pull,
         }
-        velocity
     };
     for rows in bands {
         let band = rows.start;
@@ -48,17 +46,47 @@ pub(super) fn predict(particles: &mut Particles, forces: &[BodyForce], dt: Real,
             displacement,
             position,
             |first, velocity, start, displacement, position| {
-                for k in 0..velocity.len() {
-                    let row = band + first + k;
-                    velocity[k] = pulled(row, velocity[k]);
-                    start[k] = position[k];
-                    if phase[row] != Phase::Smoke {
-                        displacement[k] = velocity[k] * dt;
-                        position[k] = start[k] + (displacement[k] + remainder[row]);
-                    }
-                }
+                let first = band + first;
+                let rows = first..first + velocity.len();
+                start.copy_from_slice(position);
+                accelerate(velocity, &inverse_mass[rows.clone()], |k| pull(first + k));
+                let moving = Moving { phase: &phase[rows.clone()], start, remainder: &remainder[rows] };
+                moving.shift(displacement, position, |k, _| velocity[k] * dt);
             },
         );
+    }
+}
+
+/// Adds to the velocities of what has inertia.
+#[inline(always)]
+fn accelerate(velocity: &mut [Vector], inverse_mass: &[Real], pull: impl Fn(usize) -> Vector) {
+    for (k, (velocity, &inverse_mass)) in velocity.iter_mut().zip(inverse_mass).enumerate() {
+        if inverse_mass > 0.0 {
+            *velocity += pull(k);
+        }
+    }
+}
+
+/// Rows whose displacements change.
+struct Moving<'a> {
+    phase: &'a [Phase],
+    start: &'a [Vector],
+    remainder: &'a [Vector],
+}
+
+impl Moving<'_> {
+    /// Sets the displacements and moves the positions along, x = x_n + (u + rem), of all but smoke.
+    #[inline(always)]
+    fn shift(&self, displacement: &mut [Vector], position: &mut [Vector], new: impl Fn(usize, Vector) -> Vector) {
+        let rows = displacement.len();
+        let (phase, start, remainder) = (&self.phase[..rows], &self.start[..rows], &self.remainder[..rows]);
+        let position = &mut position[..rows];
+        for k in 0..rows {
+            if phase[k] != Phase::Smoke {
+                displacement[k] = new(k, displacement[k]);
+                position[k] = start[k] + (displacement[k] + remainder[k]);
+            }
+        }
     }
 }
 
@@ -71,19 +99,19 @@ pub(super) fn apply(particles: &mut Particles, corrections: &Corrections, walls:
         let band = rows.start;
         let (displacement, position) = (&mut particles.displacement[rows.clone()], &mut particles.position[rows]);
         parallelism.chunks2(displacement, position, |first, displacement, position| {
-            for k in 0..displacement.len() {
-                let row = band + first + k;
-                if phase[row] == Phase::Smoke {
-                    continue;
+            let rows = band + first..band + first + displacement.len();
+            let (inverse_mass, steps) = (&inverse_mass[rows.clone()], &steps[rows.clone()]);
+            let (start, remainder) = (&start[rows.clone()], &remainder[rows.clone()]);
+            let moving = Moving { phase: &phase[rows], start, remainder };
+            moving.shift(displacement, position, |k, displacement| {
+                if inverse_mass[k] == 0.0 {
+                    return displacement;
                 }
-                if inverse_mass[row] > 0.0 {
-                    displacement[k] += steps[row];
-                    let place = start[row] + (displacement[k] + remainder[row]);
-                    meet_walls(&mut displacement[k], place, walls, |_, _| {});
-                }
-                // x = x_n + (u + rem).
-                position[k] = start[row] + (displacement[k] + remainder[row]);
-            }
+                let mut displacement = displacement + steps[k];
+                let place = start[k] + (displacement + remainder[k]);
+                meet_walls(&mut displacement, place, walls, |_, _| {});
+                displacement
+            });
         });
     }
 }
@@ -145,15 +173,18 @@ pub(super) fn update_velocities(particles: &mut Particles, dt: Real, periodic: P
         let band = rows.start;
         let (velocity, remainder) = (&mut particles.velocity[rows.clone()], &mut particles.remainder[rows]);
         parallelism.chunks2(velocity, remainder, |first, velocity, remainder| {
+            let rows = band + first..band + first + velocity.len();
+            let (phase, inverse_mass) = (&phase[rows.clone()], &inverse_mass[rows.clone()]);
+            let (displacement, start) = (&displacement[rows.clone()], &start[rows.clone()]);
+            let (position, remainder) = (&position[rows], &mut remainder[..velocity.len()]);
             for k in 0..velocity.len() {
-                let row = band + first + k;
-                if phase[row] == Phase::Smoke {
+                if phase[k] == Phase::Smoke {
                     continue;
                 }
-                if inverse_mass[row] > 0.0 {
-                    velocity[k] = displacement[row] * inverse_dt;
+                if inverse_mass[k] > 0.0 {
+                    velocity[k] = displacement[k] * inverse_dt;
                 }
-                remainder[k] = left_over(displacement[row], remainder[k], position[row] - start[row]);
+                remainder[k] = left_over(displacement[k], remainder[k], position[k] - start[k]);
             }
         });
     }

@@ -5,6 +5,8 @@ use crate::math::{Real, Vector, Vector64, real, vector};
 use crate::observe::WallOutline;
 use crate::scene::{HalfPlane, Obstacle, Scene, Side, Slip, Tank};
 
+mod behind;
+
 /// How deep a point is inside a wall, and the way out.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
@@ -87,32 +89,6 @@ impl Walls {
         &self.measured
     }
 
-    /// The gradient of [`coverage`](Self::coverage), shared out to the measured walls.
-    pub fn shares(&self, x: Vector, coverage: &Coverage, mut visit: impl FnMut(u16, Vector)) {
-        let reach = coverage.radius();
-        for plane in &self.planes {
-            let distance = (x - plane.point).dot(plane.normal);
-            if let Some(wall) = plane.measured.filter(|_| distance < reach) {
-                visit(wall, plane.normal * coverage.behind(distance).1);
-            }
-        }
-        for corner in &self.corners {
-            let a = (x - corner.point) * corner.outward;
-            if corner.measured != [None; 2] && a.min_element() > -reach {
-                let twice = coverage.quadrant(a.x, a.y).1 * corner.outward;
-                let parts = [Vector::new(-twice.x, 0.0), Vector::new(0.0, -twice.y)];
-                for (wall, part) in corner.measured.into_iter().zip(parts) {
-                    wall.into_iter().for_each(|wall| visit(wall, part));
-                }
-            }
-        }
-        for rectangle in &self.rectangles {
-            if let Some(wall) = rectangle.measured {
-                visit(wall, rectangle.coverage(x, coverage).1);
-            }
-        }
-    }
-
     /// The number under which a wall is measured, if it has a name.
     fn measure(&mut self, name: String) -> Option<u16> {
         let number = u16::try_from(self.measured.len()).ok()?;
@@ -123,34 +99,6 @@ impl Walls {
     /// Lines to draw.
     pub fn outlines(&self) -> &[WallOutline] {
         &self.outlines
-    }
-
-    /// Part of a kernel at `x` that lies inside walls, and its gradient [1/m].
-    pub fn coverage(&self, x: Vector, coverage: &Coverage) -> (Real, Vector) {
-        let reach = coverage.radius();
-        let (mut inside, mut gradient) = (0.0, Vector::ZERO);
-        for plane in &self.planes {
-            let distance = (x - plane.point).dot(plane.normal);
-            if distance < reach {
-                let (part, slope) = coverage.behind(distance);
-                inside += part;
-                gradient += plane.normal * slope;
-            }
-        }
-        if inside > 0.0 {
-            for corner in &self.corners {
-                let a = (x - corner.point) * corner.outward;
-                let (part, slope) = coverage.quadrant(a.x, a.y);
-                inside -= part;
-                gradient -= slope * corner.outward;
-            }
-        }
-        for rectangle in &self.rectangles {
-            let (part, slope) = rectangle.coverage(x, coverage);
-            inside += part;
-            gradient += slope;
-        }
-        (inside, gradient)
     }
 
     /// The walls that hold the point `x` inside them, planes first.
@@ -285,22 +233,6 @@ impl Plane {
 }
 
 impl Rectangle {
-    fn coverage(&self, x: Vector, coverage: &Coverage) -> (Real, Vector) {
-        let reach = Vector::splat(coverage.radius());
-        let (low, high) = (self.min - x, self.max - x);
-        if low.cmpge(reach).any() || high.cmple(-reach).any() {
-            return (0.0, Vector::ZERO);
-        }
-        let corners = [(high.x, high.y, 1.0), (low.x, high.y, -1.0), (high.x, low.y, -1.0), (low.x, low.y, 1.0)];
-        let (mut inside, mut gradient) = (0.0, Vector::ZERO);
-        for (a, b, sign) in corners {
-            let (part, slope) = coverage.quadrant(a, b);
-            inside += sign * part;
-            gradient -= slope * sign;
-        }
-        (inside, gradient)
-    }
-
     fn hit(&self, x: Vector) -> Option<Hit> {
         let (low, high) = (x - self.min, self.max - x);
         if low.cmple(Vector::ZERO).any() || high.cmple(Vector::ZERO).any() {
@@ -345,71 +277,10 @@ fn tank_outlines(min: Vector64, max: Vector64, open: &[Side]) -> Vec<WallOutline
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::kernel::Kernel;
 
     fn tank(open: Vec<Side>) -> Walls {
         let tank = Tank { open, ..Tank::new([0.0, 0.0], [10.0, 8.0]) };
         Walls::new(&Scene { tank: vec![tank], ..Scene::default() })
-    }
-
-    /// Kernel inside the walls by brute force.
-    fn brute_force(kernel: &Kernel, x: Vector, solid: impl Fn(Vector) -> bool) -> Real {
-        let steps = 400;
-        let cell = 2.0 * kernel.radius() / steps as Real;
-        let mut sum = 0.0;
-        for row in 0..steps {
-            for column in 0..steps {
-                let offset = (Vector::new(column as Real, row as Real) + 0.5) * cell - kernel.radius();
-                if solid(x + offset) {
-                    sum += f64::from(kernel.value(offset.length()) * cell * cell);
-                }
-            }
-        }
-        real(sum)
-    }
-
-    #[test]
-    fn corner_of_a_tank_counts_what_is_behind_both_walls_once() {
-        let (walls, kernel) = (tank(vec![]), Kernel::new(2.5));
-        let coverage = Coverage::new(&kernel);
-        for x in [Vector::new(0.5, 0.5), Vector::new(1.7, 0.2), Vector::new(9.0, 7.5), Vector::new(5.0, 0.5)] {
-            let solid = |p: Vector| p.x < 0.0 || p.y < 0.0 || p.x > 10.0 || p.y > 8.0;
-            let expected = brute_force(&kernel, x, solid);
-            let (part, gradient) = walls.coverage(x, &coverage);
-            assert!((part - expected).abs() < 2e-3, "{x}: {part} {expected}");
-            let step = Vector::new(0.05, 0.0);
-            let difference = (walls.coverage(x + step, &coverage).0 - walls.coverage(x - step, &coverage).0) / 0.1;
-            assert!((gradient.x - difference).abs() < 3e-3, "{x}: {} {difference}", gradient.x);
-        }
-    }
-
-    #[test]
-    fn obstacle_covers_its_rectangle() {
-        let obstacle =
-            Obstacle { name: String::new(), min: [1.0, 1.0], max: [2.0, 4.0], friction: 0.0, slip: Slip::Free };
-        let walls = Walls::new(&Scene { obstacle: vec![obstacle], ..Scene::default() });
-        let kernel = Kernel::new(2.5);
-        let coverage = Coverage::new(&kernel);
-        for x in [Vector::new(0.5, 0.5), Vector::new(2.4, 2.0), Vector::new(1.5, 4.2)] {
-            let expected = brute_force(&kernel, x, |p| p.x > 1.0 && p.x < 2.0 && p.y > 1.0 && p.y < 4.0);
-            assert!((walls.coverage(x, &coverage).0 - expected).abs() < 2e-3);
-        }
-        assert_eq!(walls.clamp(Vector::new(1.1, 2.0)), Vector::new(1.0, 2.0));
-    }
-
-    #[test]
-    fn what_measured_walls_share_is_the_whole_gradient() {
-        let tank = Tank { name: "tank".to_owned(), ..Tank::new([0.0, 0.0], [10.0, 8.0]) };
-        let walls = Walls::new(&Scene { tank: vec![tank], ..Scene::default() });
-        assert_eq!(walls.measured(), ["tank left", "tank right", "tank bottom"]);
-        let coverage = Coverage::new(&Kernel::new(2.5));
-        for x in [Vector::new(0.5, 0.5), Vector::new(1.7, 0.2), Vector::new(9.0, 0.7), Vector::new(5.0, 0.5)] {
-            let mut shared = [Vector::ZERO; 3];
-            walls.shares(x, &coverage, |wall, slope| shared[usize::from(wall)] += slope);
-            let whole = walls.coverage(x, &coverage).1;
-            assert!((shared.iter().sum::<Vector>() - whole).length() < 1e-6, "{x}");
-            assert!(shared[0].x <= 0.0 && shared[0].y == 0.0, "the left wall takes what points to the left");
-        }
     }
 
     #[test]
@@ -419,5 +290,12 @@ mod tests {
         assert_eq!(walls.clamp(Vector::new(-1.0, -2.0)), Vector::ZERO);
         assert_eq!(walls.outlines().len(), 1);
         assert_eq!(walls.outlines()[0].points.len(), 4);
+    }
+
+    #[test]
+    fn shortest_way_leads_out_of_an_obstacle() {
+        let obstacle = Obstacle::new([1.0, 1.0], [2.0, 4.0]);
+        let walls = Walls::new(&Scene { obstacle: vec![obstacle], ..Scene::default() });
+        assert_eq!(walls.clamp(Vector::new(1.1, 2.0)), Vector::new(1.0, 2.0));
     }
 }

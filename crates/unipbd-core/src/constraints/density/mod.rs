@@ -14,6 +14,7 @@ use super::{ConstraintGroup, Corrections, DensityColumns, Needs, Substep};
 use crate::kernel::Kernel;
 use crate::math::{Real, Vector};
 use crate::scene::GradientPoint;
+use crate::simd::Records;
 use crate::walls::Coverage;
 
 /// The density constraints of all liquids and gases of a scene.
@@ -31,6 +32,7 @@ pub struct Density {
     middle: Vec<Vector>,
     /// Repulsion strength by row.
     strength: Vec<Real>,
+    records: Records,
 }
 
 /// Kernel sums over the neighbours of each row, the row itself left out.
@@ -64,6 +66,7 @@ impl Density {
             wall_gradient: Vec::new(),
             middle: Vec::new(),
             strength: Vec::new(),
+            records: Records::default(),
         }
     }
 

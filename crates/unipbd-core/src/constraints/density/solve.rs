@@ -3,7 +3,7 @@
 use super::{Density, DensityMaterial};
 use crate::constraints::{Corrections, Substep};
 use crate::math::{Real, Vector, wide};
-use crate::phase::Phase;
+use crate::phase::{MaterialIndex, Phase};
 use crate::scene::GradientPoint;
 use crate::simd::near::{self, Near, Work};
 use crate::simd::space::{Open, Space, Wrapped};
@@ -37,7 +37,6 @@ impl Density {
     /// Pass 2: density errors and the relaxed step of each multiplier.
     pub(super) fn step_multipliers(&mut self, now: Substep<'_>) {
         let volume = self.settings.volume;
-        let own = volume * self.kernel.value(0.0);
         let gradients = self.settings.gradients;
         let behind_walls = BehindWalls {
             now,
@@ -48,24 +47,34 @@ impl Density {
                 GradientPoint::Predicted | GradientPoint::Middle => None,
             },
         };
-        let limit = now.pressure_limit * now.dt * now.dt;
+        let terms =
+            Terms { volume, own: self.kernel.value(0.0) * volume - 1.0, limit: now.pressure_limit * now.dt * now.dt };
         let (sums, materials) = (&self.sums, &self.settings.materials);
         let (inverse_mass, material_of) = (now.particles.inverse_masses(), now.particles.materials());
         let (error, wall, step, multiplier) =
             (&mut self.error, &mut self.wall_gradient, &mut self.step, &mut self.multiplier);
         let step = &mut step[..error.len()];
         now.parallelism.chunks4(error, wall, step, multiplier, |first, error, wall, step, multiplier| {
-            for k in 0..error.len() {
-                let i = first + k;
-                let (part, slope) = behind_walls.at(i);
-                error[k] = volume * sums.value[i] + own - 1.0 + part;
-                wall[k] = slope;
-                let gradient = sums.gradient[i] * volume + slope;
-                let response = inverse_mass[i] * gradient.length_squared() + volume * volume * sums.response[i];
-                let material = &materials[usize::from(material_of[i])];
-                let new = material.multiplier(multiplier[k], error[k], response, inverse_mass[i], limit);
-                step[k] = new - multiplier[k];
-                multiplier[k] = new;
+            behind_walls.fill(first, error, wall);
+            let rows = first..first + error.len();
+            let mut rows = Relaxed {
+                value: &sums.value[rows.clone()],
+                gradient: &sums.gradient[rows.clone()],
+                response: &sums.response[rows.clone()],
+                inverse_mass: &inverse_mass[rows.clone()],
+                wall,
+                error,
+                step,
+                multiplier,
+            };
+            let material_of = &material_of[first..first + rows.error.len()];
+            match uniform(material_of) {
+                // The numbers of the material stay in registers, and rows fill the vectors of the machine.
+                Some(material) => {
+                    let material = materials[usize::from(material)];
+                    rows.relax(terms, |_| material);
+                }
+                None => rows.relax(terms, |k| materials[usize::from(material_of[k])]),
             }
         });
     }
@@ -73,10 +82,10 @@ impl Density {
     /// Pass 3: displacements, gathered per row, so that momentum is kept with unequal masses too.
     pub(super) fn correct(&mut self, now: Substep<'_>, out: &mut Corrections) {
         let positions = Density::gradient_positions(self.settings.gradients, &self.middle, now);
-        let sums = &mut self.sums.gradient;
+        let (sums, records) = (&mut self.sums.gradient, &mut self.records);
         match self.kernel.alternative() {
-            None => simd::correction(now.pairs(), self.kernel.shape(), positions, &self.step, sums),
-            Some(other) => simd::correction(now.pairs(), other, positions, &self.step, sums),
+            None => simd::correction(now.pairs(), self.kernel.shape(), positions, &self.step, records, sums),
+            Some(other) => simd::correction(now.pairs(), other, positions, &self.step, records, sums),
         }
         let (sums, steps, walls) = (&self.sums.gradient, &self.step, &self.wall_gradient);
         let (volume, inverse_masses) = (self.settings.volume, now.particles.inverse_masses());
@@ -144,12 +153,17 @@ impl Density {
             _ => 0.0,
         });
         let positions = Density::gradient_positions(self.settings.gradients, &self.middle, now);
-        let (sums, reference) = (&mut self.sums.gradient, 0.2 * self.settings.kernel_radius);
+        let (sums, records) = (&mut self.sums.gradient, &mut self.records);
+        let reference = 0.2 * self.settings.kernel_radius;
         match self.kernel.alternative() {
             None => {
-                simd::correction(now.pairs(), Tensile::new(self.kernel.shape(), reference), positions, &self.step, sums)
+                let shape = Tensile::new(self.kernel.shape(), reference);
+                simd::correction(now.pairs(), shape, positions, &self.step, records, sums);
             }
-            Some(other) => simd::correction(now.pairs(), Tensile::new(other, reference), positions, &self.step, sums),
+            Some(other) => {
+                let shape = Tensile::new(other, reference);
+                simd::correction(now.pairs(), shape, positions, &self.step, records, sums);
+            }
         }
         let (sums, volume) = (&self.sums.gradient, self.settings.volume);
         now.parallelism.update(&mut out.displacements_mut()[..now.particles.listed()], |i, displacement| {
@@ -228,34 +242,106 @@ struct BehindWalls<'a> {
 }
 
 impl BehindWalls<'_> {
-    /// The part where the density is taken, and its gradient where gradients are taken [1/m].
-    #[inline]
-    fn at(&self, row: usize) -> (Real, Vector) {
-        let walls = self.now.walls;
+    /// The parts where the density is taken, and their gradients where gradients are taken [1/m].
+    fn fill(&self, first: usize, parts: &mut [Real], slopes: &mut [Vector]) {
+        let (walls, coverage) = (self.now.walls, self.coverage);
+        parts.fill(0.0);
+        slopes.fill(Vector::ZERO);
         if walls.is_empty() {
-            return (0.0, Vector::ZERO);
+            return;
         }
-        let (part, slope) = walls.coverage(self.positions[row], self.coverage);
-        match self.gradient_positions {
-            None => (part, slope),
-            Some(positions) => (part, walls.coverage(positions[row], self.coverage).1),
+        let rows = first..first + parts.len();
+        let positions = &self.positions[rows.clone()];
+        let positions_of_slopes = self.gradient_positions.map(|positions| &positions[rows]);
+        walls.for_each_near(positions, coverage.radius(), |k| {
+            let (part, slope) = walls.coverage(positions[k], coverage);
+            parts[k] = part;
+            if positions_of_slopes.is_none() {
+                slopes[k] = slope;
+            }
+        });
+        if let Some(positions) = positions_of_slopes {
+            walls.for_each_near(positions, coverage.radius(), |k| {
+                slopes[k] = walls.coverage(positions[k], coverage).1;
+            });
         }
     }
 }
 
+/// What all rows have in common.
+#[derive(Clone, Copy)]
+struct Terms {
+    /// What one neighbour counts [m^2].
+    volume: Real,
+    /// What a row itself adds to its density error, less the rest density.
+    own: Real,
+    /// Largest pressure over density times dt^2 [m^2].
+    limit: Real,
+}
+
+/// Some rows whose multipliers are to be relaxed.
+struct Relaxed<'a> {
+    value: &'a [Real],
+    gradient: &'a [Vector],
+    response: &'a [Real],
+    inverse_mass: &'a [Real],
+    wall: &'a [Vector],
+    /// The part behind walls; becomes the density error.
+    error: &'a mut [Real],
+    step: &'a mut [Real],
+    multiplier: &'a mut [Real],
+}
+
+impl Relaxed<'_> {
+    #[inline(always)]
+    fn relax(&mut self, terms: Terms, material: impl Fn(usize) -> DensityMaterial) {
+        let Terms { volume, own, limit } = terms;
+        let rows = self.error.len();
+        let (value, gradient, response) = (&self.value[..rows], &self.gradient[..rows], &self.response[..rows]);
+        let (inverse_mass, wall) = (&self.inverse_mass[..rows], &self.wall[..rows]);
+        let (error, step, multiplier) = (&mut self.error[..rows], &mut self.step[..rows], &mut self.multiplier[..rows]);
+        for k in 0..rows {
+            error[k] += volume * value[k] + own;
+            let gradient = gradient[k] * volume + wall[k];
+            let response = inverse_mass[k] * gradient.length_squared() + volume * volume * response[k];
+            let new = material(k).multiplier(multiplier[k], error[k], response, inverse_mass[k], limit);
+            step[k] = new - multiplier[k];
+            multiplier[k] = new;
+        }
+    }
+}
+
+/// The material of all rows, if they have but one.
+fn uniform(materials: &[MaterialIndex]) -> Option<MaterialIndex> {
+    let (&first, rest) = materials.split_first()?;
+    rest.iter().all(|&material| material == first).then_some(first)
+}
+
 impl DensityMaterial {
     /// The multiplier after one relaxed step. `limit` is the largest pressure over density times dt^2.
-    #[inline]
+    #[inline(always)]
     fn multiplier(&self, old: Real, error: Real, response: Real, inverse_mass: Real, limit: Real) -> Real {
-        if error < self.gate || self.relaxation == 0.0 {
-            return old;
-        }
         // A particle moved by a script may push, never pull: its own response is missing from the
         // denominator.
-        let least = if inverse_mass == 0.0 { 0.0 } else { self.multiplier_min };
-        let floor = if inverse_mass == 0.0 { self.scripted_response_min } else { self.response_min };
-        let new = (old + self.relaxation * error / (response.max(floor) + self.mixing)).max(least);
+        let scripted = inverse_mass == 0.0;
+        let least = if scripted { 0.0 } else { self.multiplier_min };
+        let floor = if scripted { self.scripted_response_min } else { self.response_min };
+        let new = old + self.relaxation * error / (larger(response, floor) + self.mixing);
         // What is squeezed in with no way out must not push harder the shorter the substep is.
-        new.clamp(-limit * self.mass, limit * self.mass)
+        let limit = limit * self.mass;
+        let new = smaller(larger(larger(new, least), -limit), limit);
+        if error < self.gate || self.relaxation == 0.0 { old } else { new }
     }
+}
+
+/// The larger one; `b` where `a` is not a number. (`Real::max` minds either, at three times the cost.)
+#[inline(always)]
+fn larger(a: Real, b: Real) -> Real {
+    if a > b { a } else { b }
+}
+
+/// The smaller one; `b` where `a` is not a number.
+#[inline(always)]
+fn smaller(a: Real, b: Real) -> Real {
+    if a < b { a } else { b }
 }

@@ -3,6 +3,7 @@
 use super::{Pairs, Pass, in_space};
 use crate::math::{Real, Vector};
 use crate::neighbors::NeighborList;
+use crate::simd::records::{Record, Records};
 use crate::simd::shapes::{Number, Shape};
 use crate::simd::space::Space;
 
@@ -12,9 +13,14 @@ pub fn correction<K: Shape>(
     kernel: K,
     positions: &[Vector],
     multipliers: &[Real],
+    records: &mut Records,
     out: &mut [Vector],
 ) {
-    in_space!(pairs, space => pairs.fill_vectors(&Correction { kernel, space, positions, multipliers }, out));
+    let record = |row: usize| [positions[row], Vector::new(multipliers[row], 0.0)];
+    let records = pairs.pack(records, positions.len().min(multipliers.len()), record);
+    in_space!(pairs, space => {
+        pairs.fill_vectors(&Correction { kernel, space, positions, multipliers, records }, out);
+    });
 }
 
 #[derive(Clone, Copy)]
@@ -23,6 +29,9 @@ struct Correction<'a, K, S> {
     space: S,
     positions: &'a [Vector],
     multipliers: &'a [Real],
+    /// Positions and multipliers, for the lane forms.
+    #[cfg_attr(feature = "f64", allow(dead_code))]
+    records: &'a [Record],
 }
 
 impl<K: Shape, S: Space> Pass<2> for Correction<'_, K, S> {
@@ -64,10 +73,8 @@ mod lanes {
         #[inline(always)]
         unsafe fn own<F: Lanes>(&self, base: usize, column: &[i16; LANES]) -> Self::Own<F> {
             // SAFETY: the caller vouches that all rows are within the columns.
-            unsafe {
-                let (x, y) = F::gather_vectors(self.positions.as_ptr().add(base), column);
-                (x, y, F::gather(self.multipliers.as_ptr().add(base), column))
-            }
+            let ((x, y), (multiplier, _)) = unsafe { F::gather_records(self.records.as_ptr().add(base), column) };
+            (x, y, multiplier)
         }
 
         #[inline(always)]
@@ -79,12 +86,8 @@ mod lanes {
             _counted: impl Fn(F) -> F,
         ) -> [F; 2] {
             // SAFETY: the caller vouches that all rows are within the columns.
-            let ((other_x, other_y), multiplier) = unsafe {
-                (
-                    F::gather_vectors(self.positions.as_ptr().add(base), column),
-                    F::gather(self.multipliers.as_ptr().add(base), column),
-                )
-            };
+            let ((other_x, other_y), (multiplier, _)) =
+                unsafe { F::gather_records(self.records.as_ptr().add(base), column) };
             let (x, y) = self.space.shortest(own.0 - other_x, own.1 - other_y);
             let factor = self.kernel.at(x * x + y * y).1 * (own.2 + multiplier);
             // Padding lies at distance zero and adds nothing.

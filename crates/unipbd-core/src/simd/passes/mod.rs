@@ -13,6 +13,7 @@ pub use repulsion::{Reach, repulsion};
 pub use velocity::{vorticity, xsph, xsph_mixed};
 
 use super::Level;
+use super::records::{Record, Records};
 #[cfg(not(feature = "f64"))]
 use super::run::{self, LanePass};
 use super::shapes::Number;
@@ -71,6 +72,16 @@ impl<'a> Pairs<'a> {
             }
             sink.store(block..block + valid, &sums);
         }
+    }
+
+    /// Puts the first `rows` rows of two columns side by side for the lane forms; the scalar ones read the columns.
+    fn pack<'r>(&self, records: &'r mut Records, rows: usize, record: impl Fn(usize) -> Record + Sync) -> &'r [Record] {
+        if cfg!(feature = "f64") || self.level == Level::Scalar {
+            return &[];
+        }
+        let packed = records.rows_mut(rows);
+        self.parallelism.fill(packed, record);
+        packed
     }
 
     fn fill<P: AnyForm<1>>(&self, pass: &P, out: &mut [Real]) {

@@ -3,6 +3,7 @@
 use super::{Pairs, Pass, Weights, in_space, rows_if};
 use crate::math::{Real, Vector};
 use crate::neighbors::NeighborList;
+use crate::simd::records::{Record, Records};
 use crate::simd::shapes::{Number, Shape};
 use crate::simd::space::Space;
 
@@ -13,13 +14,15 @@ pub fn xsph<K: Shape>(
     positions: &[Vector],
     velocities: &[Vector],
     weights: Weights<'_>,
+    records: &mut Records,
     out: &mut [Vector],
 ) {
-    let (column, factor) = weights.parts();
-    in_space!(pairs, space => if weights.is_column() {
-        pairs.fill_vectors(&Xsph::<_, _, true> { kernel, space, positions, velocities, weights: column, factor }, out)
+    let columns = Columns::pack(pairs, positions, velocities, records);
+    let (weights, factor) = weights.parts();
+    in_space!(pairs, space => if weights.is_empty() {
+        pairs.fill_vectors(&Xsph::<_, _, false> { kernel, space, columns, weights, factor }, out);
     } else {
-        pairs.fill_vectors(&Xsph::<_, _, false> { kernel, space, positions, velocities, weights: column, factor }, out)
+        pairs.fill_vectors(&Xsph::<_, _, true> { kernel, space, columns, weights, factor }, out);
     });
 }
 
@@ -32,22 +35,53 @@ pub fn xsph_mixed<K: Shape>(
     positions: &[Vector],
     velocities: &[Vector],
     traits: &[Vector],
+    records: &mut Records,
     out: &mut [Vector],
 ) {
-    in_space!(pairs, space => pairs.fill_vectors(&XsphMixed { kernel, space, positions, velocities, traits }, out));
+    let columns = Columns::pack(pairs, positions, velocities, records);
+    in_space!(pairs, space => pairs.fill_vectors(&XsphMixed { kernel, space, columns, traits }, out));
 }
 
 /// out_i = sum_j x_ij x (v_j - v_i) g_ij: the vorticity, once multiplied by the volume of a particle.
-pub fn vorticity<K: Shape>(pairs: Pairs<'_>, kernel: K, positions: &[Vector], velocities: &[Vector], out: &mut [Real]) {
-    in_space!(pairs, space => pairs.fill(&Vorticity { kernel, space, positions, velocities }, out));
+pub fn vorticity<K: Shape>(
+    pairs: Pairs<'_>,
+    kernel: K,
+    positions: &[Vector],
+    velocities: &[Vector],
+    records: &mut Records,
+    out: &mut [Real],
+) {
+    let columns = Columns::pack(pairs, positions, velocities, records);
+    in_space!(pairs, space => pairs.fill(&Vorticity { kernel, space, columns }, out));
+}
+
+/// What all passes over velocities read.
+#[derive(Clone, Copy)]
+struct Columns<'a> {
+    positions: &'a [Vector],
+    velocities: &'a [Vector],
+    /// Both side by side, for the lane forms.
+    #[cfg_attr(feature = "f64", allow(dead_code))]
+    records: &'a [Record],
+}
+
+impl<'a> Columns<'a> {
+    fn pack(pairs: Pairs<'_>, positions: &'a [Vector], velocities: &'a [Vector], records: &'a mut Records) -> Self {
+        let rows = positions.len().min(velocities.len());
+        let records = pairs.pack(records, rows, |row| [positions[row], velocities[row]]);
+        Columns { positions, velocities, records }
+    }
+
+    fn shortest(&self) -> usize {
+        self.positions.len().min(self.velocities.len())
+    }
 }
 
 #[derive(Clone, Copy)]
 struct Xsph<'a, K, S, const WEIGHTED: bool> {
     kernel: K,
     space: S,
-    positions: &'a [Vector],
-    velocities: &'a [Vector],
+    columns: Columns<'a>,
     weights: &'a [Real],
     factor: Real,
 }
@@ -56,14 +90,14 @@ impl<K: Shape, S: Space, const WEIGHTED: bool> Pass<2> for Xsph<'_, K, S, WEIGHT
     fn row(&self, list: &NeighborList, row: usize) -> [Real; 2] {
         let [mut sum_x, mut sum_y] = [0.0; 2];
         list.for_each(row, |j| {
-            let apart = self.positions[row] - self.positions[j];
+            let apart = self.columns.positions[row] - self.columns.positions[j];
             let (x, y) = self.space.shortest(apart.x, apart.y);
             let mut w = self.kernel.at(x * x + y * y).0;
             if WEIGHTED {
                 w *= self.weights[j];
             }
-            sum_x += w * (self.velocities[j].x - self.velocities[row].x);
-            sum_y += w * (self.velocities[j].y - self.velocities[row].y);
+            sum_x += w * (self.columns.velocities[j].x - self.columns.velocities[row].x);
+            sum_y += w * (self.columns.velocities[j].y - self.columns.velocities[row].y);
         });
         self.finish([sum_x, sum_y])
     }
@@ -75,7 +109,7 @@ impl<K: Shape, S: Space, const WEIGHTED: bool> Pass<2> for Xsph<'_, K, S, WEIGHT
     }
 
     fn shortest_column(&self) -> usize {
-        self.positions.len().min(self.velocities.len()).min(rows_if(WEIGHTED, self.weights))
+        self.columns.shortest().min(rows_if(WEIGHTED, self.weights))
     }
 }
 
@@ -83,8 +117,7 @@ impl<K: Shape, S: Space, const WEIGHTED: bool> Pass<2> for Xsph<'_, K, S, WEIGHT
 struct XsphMixed<'a, K, S> {
     kernel: K,
     space: S,
-    positions: &'a [Vector],
-    velocities: &'a [Vector],
+    columns: Columns<'a>,
     traits: &'a [Vector],
 }
 
@@ -98,12 +131,12 @@ impl<K: Shape, S: Space> Pass<2> for XsphMixed<'_, K, S> {
     fn row(&self, list: &NeighborList, row: usize) -> [Real; 2] {
         let [mut sum_x, mut sum_y] = [0.0; 2];
         list.for_each(row, |j| {
-            let apart = self.positions[row] - self.positions[j];
+            let apart = self.columns.positions[row] - self.columns.positions[j];
             let (x, y) = self.space.shortest(apart.x, apart.y);
             let exchange = exchange(self.traits[row].into(), self.traits[j].into());
             let w = self.kernel.at(x * x + y * y).0 * exchange;
-            sum_x += w * (self.velocities[j].x - self.velocities[row].x);
-            sum_y += w * (self.velocities[j].y - self.velocities[row].y);
+            sum_x += w * (self.columns.velocities[j].x - self.columns.velocities[row].x);
+            sum_y += w * (self.columns.velocities[j].y - self.columns.velocities[row].y);
         });
         self.finish([sum_x, sum_y])
     }
@@ -115,7 +148,7 @@ impl<K: Shape, S: Space> Pass<2> for XsphMixed<'_, K, S> {
     }
 
     fn shortest_column(&self) -> usize {
-        self.positions.len().min(self.velocities.len()).min(self.traits.len())
+        self.columns.shortest().min(self.traits.len())
     }
 }
 
@@ -123,19 +156,18 @@ impl<K: Shape, S: Space> Pass<2> for XsphMixed<'_, K, S> {
 struct Vorticity<'a, K, S> {
     kernel: K,
     space: S,
-    positions: &'a [Vector],
-    velocities: &'a [Vector],
+    columns: Columns<'a>,
 }
 
 impl<K: Shape, S: Space> Pass<1> for Vorticity<'_, K, S> {
     fn row(&self, list: &NeighborList, row: usize) -> [Real; 1] {
         let mut sum = 0.0;
         list.for_each(row, |j| {
-            let apart = self.positions[row] - self.positions[j];
+            let apart = self.columns.positions[row] - self.columns.positions[j];
             let (x, y) = self.space.shortest(apart.x, apart.y);
             let g = self.kernel.at(x * x + y * y).1;
-            let u = self.velocities[j].x - self.velocities[row].x;
-            let v = self.velocities[j].y - self.velocities[row].y;
+            let u = self.columns.velocities[j].x - self.columns.velocities[row].x;
+            let v = self.columns.velocities[j].y - self.columns.velocities[row].y;
             sum += g * (x * v - y * u);
         });
         self.finish([sum])
@@ -147,7 +179,7 @@ impl<K: Shape, S: Space> Pass<1> for Vorticity<'_, K, S> {
     }
 
     fn shortest_column(&self) -> usize {
-        self.positions.len().min(self.velocities.len())
+        self.columns.shortest()
     }
 }
 
@@ -158,20 +190,15 @@ mod lanes {
     use crate::simd::lanes::{Entry, Lanes};
     use crate::simd::run::LanePass;
 
-    /// Vectors of two columns.
+    /// Positions and velocities.
     ///
     /// # Safety
-    /// As for [`Lanes::gather_vectors`], in both columns.
+    /// As for [`Lanes::gather_records`].
     #[allow(unsafe_code)]
     #[inline(always)]
-    unsafe fn gather_both<F: Lanes, E: Entry>(
-        a: &[Vector],
-        b: &[Vector],
-        base: usize,
-        column: &[E; LANES],
-    ) -> ((F, F), (F, F)) {
+    unsafe fn gather<F: Lanes, E: Entry>(columns: &Columns<'_>, base: usize, column: &[E; LANES]) -> ((F, F), (F, F)) {
         // SAFETY: passed on to the caller.
-        unsafe { (F::gather_vectors(a.as_ptr().add(base), column), F::gather_vectors(b.as_ptr().add(base), column)) }
+        unsafe { F::gather_records(columns.records.as_ptr().add(base), column) }
     }
 
     #[allow(unsafe_code)]
@@ -182,7 +209,7 @@ mod lanes {
         #[inline(always)]
         unsafe fn own<F: Lanes>(&self, base: usize, column: &[i16; LANES]) -> Self::Own<F> {
             // SAFETY: the caller vouches that all rows are within the columns.
-            unsafe { gather_both(self.positions, self.velocities, base, column) }
+            unsafe { gather(&self.columns, base, column) }
         }
 
         #[inline(always)]
@@ -194,8 +221,7 @@ mod lanes {
             _counted: impl Fn(F) -> F,
         ) -> [F; 2] {
             // SAFETY: the caller vouches that all rows are within the columns.
-            let ((other_x, other_y), (u, v)): Self::Own<F> =
-                unsafe { gather_both(self.positions, self.velocities, base, column) };
+            let ((other_x, other_y), (u, v)): Self::Own<F> = unsafe { gather(&self.columns, base, column) };
             let (x, y) = self.space.shortest(own.0.0 - other_x, own.0.1 - other_y);
             let mut w = self.kernel.at(x * x + y * y).0;
             if WEIGHTED {
@@ -216,7 +242,7 @@ mod lanes {
         unsafe fn own<F: Lanes>(&self, base: usize, column: &[i16; LANES]) -> Self::Own<F> {
             // SAFETY: the caller vouches that all rows are within the columns.
             unsafe {
-                let (at, velocity) = gather_both(self.positions, self.velocities, base, column);
+                let (at, velocity) = gather(&self.columns, base, column);
                 (at, velocity, F::gather_vectors(self.traits.as_ptr().add(base), column))
             }
         }
@@ -231,7 +257,7 @@ mod lanes {
         ) -> [F; 2] {
             // SAFETY: the caller vouches that all rows are within the columns.
             let (((other_x, other_y), (u, v)), traits): (((F, F), (F, F)), (F, F)) = unsafe {
-                let both = gather_both(self.positions, self.velocities, base, column);
+                let both = gather(&self.columns, base, column);
                 (both, F::gather_vectors(self.traits.as_ptr().add(base), column))
             };
             let (x, y) = self.space.shortest(own.0.0 - other_x, own.0.1 - other_y);
@@ -249,7 +275,7 @@ mod lanes {
         #[inline(always)]
         unsafe fn own<F: Lanes>(&self, base: usize, column: &[i16; LANES]) -> Self::Own<F> {
             // SAFETY: the caller vouches that all rows are within the columns.
-            unsafe { gather_both(self.positions, self.velocities, base, column) }
+            unsafe { gather(&self.columns, base, column) }
         }
 
         #[inline(always)]
@@ -261,8 +287,7 @@ mod lanes {
             _counted: impl Fn(F) -> F,
         ) -> [F; 1] {
             // SAFETY: the caller vouches that all rows are within the columns.
-            let ((other_x, other_y), (u, v)): Self::Own<F> =
-                unsafe { gather_both(self.positions, self.velocities, base, column) };
+            let ((other_x, other_y), (u, v)): Self::Own<F> = unsafe { gather(&self.columns, base, column) };
             let (x, y) = self.space.shortest(own.0.0 - other_x, own.0.1 - other_y);
             let g = self.kernel.at(x * x + y * y).1;
             // Padding lies at distance zero and adds nothing.

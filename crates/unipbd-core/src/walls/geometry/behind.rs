@@ -1,0 +1,197 @@
+//! How much of a kernel lies behind walls, and whether any does.
+
+use super::{Rectangle, Walls};
+use crate::math::{Real, Vector};
+use crate::parallel::CHUNK_ROWS;
+use crate::walls::Coverage;
+
+impl Walls {
+    /// Part of a kernel at `x` that lies inside walls, and its gradient [1/m].
+    pub fn coverage(&self, x: Vector, coverage: &Coverage) -> (Real, Vector) {
+        let reach = coverage.radius();
+        let (mut inside, mut gradient) = (0.0, Vector::ZERO);
+        for plane in &self.planes {
+            let distance = (x - plane.point).dot(plane.normal);
+            if distance < reach {
+                let (part, slope) = coverage.behind(distance);
+                inside += part;
+                gradient += plane.normal * slope;
+            }
+        }
+        if inside > 0.0 {
+            for corner in &self.corners {
+                let a = (x - corner.point) * corner.outward;
+                if a.min_element() > -reach {
+                    let (part, slope) = coverage.quadrant(a.x, a.y);
+                    inside -= part;
+                    gradient -= slope * corner.outward;
+                }
+            }
+        }
+        for rectangle in &self.rectangles {
+            let (part, slope) = rectangle.coverage(x, coverage);
+            inside += part;
+            gradient += slope;
+        }
+        (inside, gradient)
+    }
+
+    /// Visits the numbers of all points nearer than `reach` to any wall, and of a few more. Where most
+    /// are far from all walls this costs little more than to tell so.
+    pub fn for_each_near(&self, points: &[Vector], reach: Real, mut visit: impl FnMut(usize)) {
+        let mut distances = [0.0; CHUNK_ROWS];
+        for (first, points) in (0..).step_by(CHUNK_ROWS).zip(points.chunks(CHUNK_ROWS)) {
+            let distances = &mut distances[..points.len()];
+            self.distances(points, distances);
+            let near = distances.iter().enumerate().filter(|(_, distance)| **distance < reach);
+            near.for_each(|(k, _)| visit(first + k));
+        }
+    }
+
+    /// The distance of each point to the nearest wall, or less.
+    fn distances(&self, points: &[Vector], distances: &mut [Real]) {
+        distances.fill(Real::INFINITY);
+        let nearer = |distance: Real, other: Real| if distance < other { distance } else { other };
+        for plane in &self.planes {
+            for (slot, &x) in distances.iter_mut().zip(points) {
+                *slot = nearer((x - plane.point).dot(plane.normal), *slot);
+            }
+        }
+        for rectangle in &self.rectangles {
+            for (slot, &x) in distances.iter_mut().zip(points) {
+                let (low, high) = (rectangle.min - x, x - rectangle.max);
+                let outside = |low: Real, high: Real| if low > high { low } else { high };
+                *slot = nearer(outside(outside(low.x, high.x), outside(low.y, high.y)), *slot);
+            }
+        }
+    }
+
+    /// The gradient of [`coverage`](Self::coverage), shared out to the measured walls.
+    pub fn shares(&self, x: Vector, coverage: &Coverage, mut visit: impl FnMut(u16, Vector)) {
+        let reach = coverage.radius();
+        for plane in &self.planes {
+            let distance = (x - plane.point).dot(plane.normal);
+            if let Some(wall) = plane.measured.filter(|_| distance < reach) {
+                visit(wall, plane.normal * coverage.behind(distance).1);
+            }
+        }
+        for corner in &self.corners {
+            let a = (x - corner.point) * corner.outward;
+            if corner.measured != [None; 2] && a.min_element() > -reach {
+                let twice = coverage.quadrant(a.x, a.y).1 * corner.outward;
+                let parts = [Vector::new(-twice.x, 0.0), Vector::new(0.0, -twice.y)];
+                for (wall, part) in corner.measured.into_iter().zip(parts) {
+                    wall.into_iter().for_each(|wall| visit(wall, part));
+                }
+            }
+        }
+        for rectangle in &self.rectangles {
+            if let Some(wall) = rectangle.measured {
+                visit(wall, rectangle.coverage(x, coverage).1);
+            }
+        }
+    }
+}
+
+impl Rectangle {
+    pub(super) fn coverage(&self, x: Vector, coverage: &Coverage) -> (Real, Vector) {
+        let reach = Vector::splat(coverage.radius());
+        let (low, high) = (self.min - x, self.max - x);
+        if low.cmpge(reach).any() || high.cmple(-reach).any() {
+            return (0.0, Vector::ZERO);
+        }
+        let corners = [(high.x, high.y, 1.0), (low.x, high.y, -1.0), (high.x, low.y, -1.0), (low.x, low.y, 1.0)];
+        let (mut inside, mut gradient) = (0.0, Vector::ZERO);
+        for (a, b, sign) in corners {
+            let (part, slope) = coverage.quadrant(a, b);
+            inside += sign * part;
+            gradient -= slope * sign;
+        }
+        (inside, gradient)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::kernel::Kernel;
+    use crate::math::real;
+    use crate::scene::{Obstacle, Scene, Side, Tank};
+
+    fn tank(open: Vec<Side>) -> Walls {
+        let tank = Tank { open, ..Tank::new([0.0, 0.0], [10.0, 8.0]) };
+        Walls::new(&Scene { tank: vec![tank], ..Scene::default() })
+    }
+
+    /// Kernel inside the walls by brute force.
+    fn brute_force(kernel: &Kernel, x: Vector, solid: impl Fn(Vector) -> bool) -> Real {
+        let steps = 400;
+        let cell = 2.0 * kernel.radius() / steps as Real;
+        let mut sum = 0.0;
+        for row in 0..steps {
+            for column in 0..steps {
+                let offset = (Vector::new(column as Real, row as Real) + 0.5) * cell - kernel.radius();
+                if solid(x + offset) {
+                    sum += f64::from(kernel.value(offset.length()) * cell * cell);
+                }
+            }
+        }
+        real(sum)
+    }
+
+    #[test]
+    fn corner_of_a_tank_counts_what_is_behind_both_walls_once() {
+        let (walls, kernel) = (tank(vec![]), Kernel::new(2.5));
+        let coverage = Coverage::new(&kernel);
+        for x in [Vector::new(0.5, 0.5), Vector::new(1.7, 0.2), Vector::new(9.0, 7.5), Vector::new(5.0, 0.5)] {
+            let solid = |p: Vector| p.x < 0.0 || p.y < 0.0 || p.x > 10.0 || p.y > 8.0;
+            let expected = brute_force(&kernel, x, solid);
+            let (part, gradient) = walls.coverage(x, &coverage);
+            assert!((part - expected).abs() < 2e-3, "{x}: {part} {expected}");
+            let step = Vector::new(0.05, 0.0);
+            let difference = (walls.coverage(x + step, &coverage).0 - walls.coverage(x - step, &coverage).0) / 0.1;
+            assert!((gradient.x - difference).abs() < 3e-3, "{x}: {} {difference}", gradient.x);
+        }
+    }
+
+    #[test]
+    fn obstacle_covers_its_rectangle() {
+        let obstacle = Obstacle::new([1.0, 1.0], [2.0, 4.0]);
+        let walls = Walls::new(&Scene { obstacle: vec![obstacle], ..Scene::default() });
+        let kernel = Kernel::new(2.5);
+        let coverage = Coverage::new(&kernel);
+        for x in [Vector::new(0.5, 0.5), Vector::new(2.4, 2.0), Vector::new(1.5, 4.2)] {
+            let expected = brute_force(&kernel, x, |p| p.x > 1.0 && p.x < 2.0 && p.y > 1.0 && p.y < 4.0);
+            assert!((walls.coverage(x, &coverage).0 - expected).abs() < 2e-3);
+        }
+    }
+
+    #[test]
+    fn what_measured_walls_share_is_the_whole_gradient() {
+        let tank = Tank { name: "tank".to_owned(), ..Tank::new([0.0, 0.0], [10.0, 8.0]) };
+        let walls = Walls::new(&Scene { tank: vec![tank], ..Scene::default() });
+        assert_eq!(walls.measured(), ["tank left", "tank right", "tank bottom"]);
+        let coverage = Coverage::new(&Kernel::new(2.5));
+        for x in [Vector::new(0.5, 0.5), Vector::new(1.7, 0.2), Vector::new(9.0, 0.7), Vector::new(5.0, 0.5)] {
+            let mut shared = [Vector::ZERO; 3];
+            walls.shares(x, &coverage, |wall, slope| shared[usize::from(wall)] += slope);
+            let whole = walls.coverage(x, &coverage).1;
+            assert!((shared.iter().sum::<Vector>() - whole).length() < 1e-6, "{x}");
+            assert!(shared[0].x <= 0.0 && shared[0].y == 0.0, "the left wall takes what points to the left");
+        }
+    }
+
+    #[test]
+    fn no_point_with_a_wall_within_reach_is_passed_over() {
+        let mut walls = tank(vec![Side::Top]);
+        walls.add_obstacle(&Obstacle::new([3.0, 2.0], [5.0, 4.0]));
+        let coverage = Coverage::new(&Kernel::new(1.5));
+        let point = |k: usize| Vector::new((k % 37) as Real * 0.33 - 1.0, (k % 41) as Real * 0.27 - 1.0);
+        let points: Vec<_> = (0..1000).map(point).collect();
+        let mut far = vec![true; points.len()];
+        walls.for_each_near(&points, coverage.radius(), |k| far[k] = false);
+        let inside = |k: usize| walls.coverage(points[k], &coverage).0;
+        assert!((0..1000).all(|k| !far[k] || inside(k) == 0.0));
+        assert!((0..1000).filter(|&k| far[k]).count() > 50);
+    }
+}
