@@ -26,7 +26,7 @@ impl Runs for Ours {
 pub fn unipbd(case: &Case, target: f64, threads: usize) -> Outcome {
     let scene = Scene {
         spacing: case.dx,
-        liquid: vec![Liquid { viscosity: 0.01, ..Liquid::new("water", 1000.0) }],
+        liquid: vec![Liquid::new("water", 1000.0)],
         block: vec![Block::new("water", [0.0, 0.0], case.block)],
         tank: vec![Tank::new([0.0, 0.0], case.tank)],
         solver: SolverSettings { target_compression: target, ..SolverSettings::default() },

@@ -6,7 +6,7 @@
 //! loose: smoke markers and free points. Rows are re-sorted as particles move, so a row number means
 //! nothing between two steps: the id does.
 
-use crate::bytes::{Damage, Reader, Writer};
+use crate::bytes::{Damage, Reader, Writer, held};
 use crate::math::{Real, Vector};
 use crate::parallel::Parallelism;
 use crate::phase::{MaterialIndex, Phase};
@@ -107,7 +107,7 @@ macro_rules! columns {
 
             /// Memory held by the columns [bytes].
             pub(crate) fn memory_bytes(&self) -> usize {
-                0 $( + self.$name.capacity() * size_of::<$type>() )*
+                0 $( + held(&self.$name) )*
             }
         }
     };
@@ -347,6 +347,12 @@ pub(crate) struct Scratch {
     ids: Vec<u32>,
     materials: Vec<MaterialIndex>,
     phases: Vec<Phase>,
+}
+
+impl Scratch {
+    pub(crate) fn memory_bytes(&self) -> usize {
+        held(&self.vectors) + held(&self.reals) + held(&self.ids) + held(&self.materials) + held(&self.phases)
+    }
 }
 
 /// Finds the buffer of an element type.

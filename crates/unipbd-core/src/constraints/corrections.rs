@@ -1,3 +1,4 @@
+use crate::bytes::held;
 use crate::math::{Vector, Vector64};
 use std::ops::Range;
 
@@ -38,6 +39,10 @@ impl Corrections {
     /// Forces on the measured walls times dt^2, to be written [kg m].
     pub fn wall_loads_mut(&mut self) -> &mut [Vector64] {
         &mut self.wall_load
+    }
+
+    pub(crate) fn memory_bytes(&self) -> usize {
+        held(&self.displacement) + held(&self.load) + held(&self.wall_load)
     }
 
     /// Adds a displacement to one row.

@@ -2,6 +2,7 @@
 //! [`MassDensityDescription`](crate::scene::MassDensityDescription).
 
 use super::{ConstraintGroup, Corrections, DensityColumns, Needs, Substep};
+use crate::bytes::held;
 use crate::kernel::Kernel;
 use crate::math::{Real, Vector, real};
 use crate::phase::Phase;
@@ -149,6 +150,10 @@ impl ConstraintGroup for MassDensity {
         self.error.resize(rows, 0.0);
         self.multiplier.resize(rows, 0.0);
         self.rows.resize(rows, Row::default());
+    }
+
+    fn memory_bytes(&self) -> usize {
+        held(&self.error) + held(&self.multiplier) + held(&self.rows)
     }
 
     fn project(&mut self, now: Substep<'_>, out: &mut Corrections) {

@@ -108,6 +108,11 @@ pub trait ConstraintGroup: Send + Sync {
         let _ = (now, velocities);
     }
 
+    /// Memory held by columns of its own [bytes].
+    fn memory_bytes(&self) -> usize {
+        0
+    }
+
     /// Largest violation after the last projection, in the group's own unit.
     fn violation(&self) -> Option<f64> {
         None

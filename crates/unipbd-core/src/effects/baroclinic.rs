@@ -1,4 +1,5 @@
 use super::{Changes, Effect, any, per_gas};
+use crate::bytes::held;
 use crate::constraints::{Needs, Substep};
 use crate::math::{Real, Vector, real, vector};
 use crate::scene::Scene;
@@ -37,6 +38,10 @@ impl Effect for Baroclinic {
 
     fn needs(&self) -> Needs {
         Needs::NOTHING
+    }
+
+    fn memory_bytes(&self) -> usize {
+        held(&self.lightness)
     }
 
     fn apply(&mut self, now: Substep<'_>, out: &mut Changes) {

@@ -1,4 +1,5 @@
 use super::{Changes, Effect, any};
+use crate::bytes::held;
 use crate::constraints::Substep;
 use crate::kernel::Kernel;
 use crate::math::{Real, Vector, real};
@@ -60,6 +61,10 @@ impl Cohesion {
 impl Effect for Cohesion {
     fn name(&self) -> &'static str {
         "cohesion"
+    }
+
+    fn memory_bytes(&self) -> usize {
+        held(&self.normal)
     }
 
     fn apply(&mut self, now: Substep<'_>, out: &mut Changes) {

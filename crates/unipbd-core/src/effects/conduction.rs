@@ -1,4 +1,5 @@
 use super::{Changes, Effect, any, per_gas};
+use crate::bytes::held;
 use crate::constraints::Substep;
 use crate::kernel::Kernel;
 use crate::math::{Real, real};
@@ -34,6 +35,10 @@ impl Conduction {
 impl Effect for Conduction {
     fn name(&self) -> &'static str {
         "conduction"
+    }
+
+    fn memory_bytes(&self) -> usize {
+        held(&self.weights) + held(&self.sums)
     }
 
     fn apply(&mut self, now: Substep<'_>, out: &mut Changes) {

@@ -1,4 +1,5 @@
 use super::{Changes, Effect, any, per_gas};
+use crate::bytes::held;
 use crate::constraints::Substep;
 use crate::kernel::Kernel;
 use crate::math::{Real, Vector, real};
@@ -58,6 +59,10 @@ impl VorticityConfinement {
 impl Effect for VorticityConfinement {
     fn name(&self) -> &'static str {
         "vorticity"
+    }
+
+    fn memory_bytes(&self) -> usize {
+        held(&self.vorticity) + held(&self.size) + held(&self.gradient) + self.records.memory_bytes()
     }
 
     fn apply(&mut self, now: Substep<'_>, out: &mut Changes) {

@@ -25,6 +25,7 @@ pub use smoke::{Advected, SmokeAdvection};
 pub use viscosity::Viscosity;
 pub use wind::Wind;
 
+use crate::bytes::held;
 use crate::constraints::{Needs, Substep};
 use crate::math::{Real, Vector};
 use crate::scene::{Gas, MaterialRef, Scene};
@@ -41,6 +42,11 @@ pub trait Effect: Send + Sync {
 
     /// Adds to `out` what is to change; the loop applies it to all rows but those moved by a script.
     fn apply(&mut self, now: Substep<'_>, out: &mut Changes);
+
+    /// Memory held by columns of its own [bytes].
+    fn memory_bytes(&self) -> usize {
+        0
+    }
 }
 
 /// Changes of the dense rows, zero unless an effect adds to them.
@@ -53,6 +59,10 @@ pub struct Changes {
 }
 
 impl Changes {
+    pub(crate) fn memory_bytes(&self) -> usize {
+        held(&self.velocity) + held(&self.temperature)
+    }
+
     /// Back to zero for this many dense rows.
     pub(crate) fn reset(&mut self, rows: usize, temperatures: bool) {
         self.velocity.clear();

@@ -1,4 +1,5 @@
 use super::{Changes, Effect, any};
+use crate::bytes::held;
 use crate::constraints::Substep;
 use crate::kernel::Kernel;
 use crate::math::{Real, Vector, real};
@@ -119,6 +120,10 @@ fn stages(steps: f64) -> (u32, f64) {
 impl Effect for ShearViscosity {
     fn name(&self) -> &'static str {
         "shear_viscosity"
+    }
+
+    fn memory_bytes(&self) -> usize {
+        held(&self.weights) + held(&self.sums) + held(&self.now) + held(&self.before) + self.records.memory_bytes()
     }
 
     fn apply(&mut self, now: Substep<'_>, out: &mut Changes) {

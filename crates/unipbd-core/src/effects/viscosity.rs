@@ -1,4 +1,5 @@
 use super::{Changes, Effect, any};
+use crate::bytes::held;
 use crate::constraints::Substep;
 use crate::kernel::Kernel;
 use crate::math::{Real, Vector, real};
@@ -47,6 +48,10 @@ fn uniform(scene: &Scene, strength: &[Real]) -> Option<Real> {
 impl Effect for Viscosity {
     fn name(&self) -> &'static str {
         "viscosity"
+    }
+
+    fn memory_bytes(&self) -> usize {
+        held(&self.traits) + self.records.memory_bytes()
     }
 
     fn apply(&mut self, now: Substep<'_>, out: &mut Changes) {

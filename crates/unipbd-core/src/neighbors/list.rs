@@ -331,14 +331,24 @@ impl Chunk {
         let narrow = base - reach.start as usize <= 1 << 15 && reach.end as usize - base <= 1 << 15;
         let (start, width) = if narrow {
             let start = self.narrow.len();
+            make_room(&mut self.narrow, depth as usize);
             near.columns(found, depth as usize, padding, &mut self.narrow);
             (start, Width::Narrow)
         } else {
             let start = self.wide.len();
+            make_room(&mut self.wide, depth as usize);
             found.transpose(depth as usize, padding.map(i32::from), |offset| offset, &mut self.wide);
             (start, Width::Wide)
         };
         self.blocks.push(Block { counts, depth, start: start as u32, width });
+    }
+}
+
+/// Room for some more columns, and an eighth of all: a list is most of what a particle takes, and doubling
+/// would leave half of it empty.
+fn make_room<T>(columns: &mut Vec<T>, more: usize) {
+    if columns.capacity() - columns.len() < more {
+        columns.reserve_exact(more.max(columns.len() / 8));
     }
 }
 

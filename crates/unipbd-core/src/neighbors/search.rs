@@ -1,7 +1,7 @@
 //! The neighbour search of a run: grid, list and skin, kept valid while particles move.
 
 use super::{Cursor, Grid, Motion, NeighborList, Periodic, SkinList};
-use crate::bytes::{Damage, Reader, Writer};
+use crate::bytes::{Damage, Reader, Writer, held};
 use crate::math::{Real, Vector};
 use crate::parallel::Parallelism;
 use crate::particles::{Particles, Scratch};
@@ -96,6 +96,7 @@ pub struct Neighbors {
     radius: Real,
     /// Skin kept for the small moves of the projection, so that velocity passes find their pairs.
     least_skin: Real,
+    /// Where the list is made, where it must cover more than the predicted positions.
     reference: Vec<Vector>,
     /// The sleeping rows, behind those of `grid`: those near others that are awake, then the rest.
     still: [Grid; 2],
@@ -235,20 +236,29 @@ impl Neighbors {
         self.set_reference(particles, cover, parallelism);
         // Smoke follows the dense rows only to stay near them in memory.
         let radius = SkinList::list_radius(self.radius, skin);
-        let (indexed, loose) = (&self.reference[..awake], &self.reference[dense..]);
+        let reference = Self::reference(&self.reference, particles, cover);
+        let (indexed, loose) = (&reference[..awake], &reference[dense..]);
         let (order, loose_order) = self.grid.order_both(indexed, loose, radius, parallelism);
         particles.reorder(0, order, parallelism, &mut self.scratch);
         particles.reorder(dense, loose_order, parallelism, &mut self.scratch);
         self.set_reference(particles, cover, parallelism);
-        self.build_list(skin, parallelism);
+        let reference = Self::reference(&self.reference, particles, cover);
+        Self::build_list(&mut self.list, &self.grid, &self.still, reference, (self.radius, skin), parallelism);
         self.motion = self.moved_to(particles.positions(), parallelism);
     }
 
-    fn build_list(&mut self, skin: Real, parallelism: Parallelism) {
-        if self.anything_still() {
-            self.list.build_beside(&self.grid, &self.still, &self.reference, self.radius, skin, parallelism);
+    fn build_list(
+        list: &mut SkinList,
+        grid: &Grid,
+        still: &[Grid; 2],
+        reference: &[Vector],
+        (radius, skin): (Real, Real),
+        parallelism: Parallelism,
+    ) {
+        if still.iter().any(|still| still.rows() > 0) {
+            list.build_beside(grid, still, reference, radius, skin, parallelism);
         } else {
-            self.list.build(&self.grid, &self.reference, self.radius, skin, parallelism);
+            list.build(grid, reference, radius, skin, parallelism);
         }
     }
 
@@ -263,9 +273,6 @@ impl Neighbors {
             let (order, _) = still.order_both(&particles.positions()[rows.clone()], &[], radius, parallelism);
             particles.reorder(rows.start, order, parallelism, &mut self.scratch);
         }
-        let rows = particles.awake()..particles.dense();
-        self.reference.resize(particles.len(), Vector::ZERO);
-        self.reference[rows.clone()].copy_from_slice(&particles.positions()[rows]);
     }
 
     /// The cheapest skin for particles that come nearer by up to `step` per substep: a list that lasts
@@ -279,19 +286,30 @@ impl Neighbors {
         wanted.max(self.least_skin).max(needed)
     }
 
+    /// Finds the positions to make a list at, where they are not the predicted ones.
     fn set_reference(&mut self, particles: &Particles, cover: Cover, parallelism: Parallelism) {
+        if cover == Cover::Predicted {
+            return;
+        }
         let (start, end) = (particles.starts(), particles.positions());
         let periodic = self.grid.periodic();
         self.reference.resize(end.len(), Vector::ZERO);
+        self.reference[particles.awake()..particles.dense()]
+            .copy_from_slice(&end[particles.awake()..particles.dense()]);
         for rows in particles.bands() {
             let first = rows.start;
-            match cover {
-                Cover::Predicted => self.reference[rows.clone()].copy_from_slice(&end[rows]),
-                Cover::StartAndPredicted => parallelism.fill(&mut self.reference[rows], |row| {
-                    let (start, end) = (start[first + row], end[first + row]);
-                    periodic.wrap(start + 0.5 * periodic.min_image(end - start))
-                }),
-            }
+            parallelism.fill(&mut self.reference[rows], |row| {
+                let (start, end) = (start[first + row], end[first + row]);
+                periodic.wrap(start + 0.5 * periodic.min_image(end - start))
+            });
+        }
+    }
+
+    /// The positions to make a list at.
+    fn reference<'a>(middle: &'a [Vector], particles: &'a Particles, cover: Cover) -> &'a [Vector] {
+        match cover {
+            Cover::Predicted => particles.positions(),
+            Cover::StartAndPredicted => middle,
         }
     }
 
@@ -306,7 +324,6 @@ impl Neighbors {
             self.invalidate();
             return;
         }
-        self.reference.clone_from(&saved.reference);
         let radius = SkinList::list_radius(self.radius, saved.skin);
         self.grid.order_both(&saved.reference[..particles.awake()], &[], radius, parallelism);
         let radius = self.still_radius();
@@ -314,8 +331,10 @@ impl Neighbors {
             still.order_both(&particles.positions()[rows], &[], radius, parallelism);
         }
         self.still_sorted = true;
-        self.reference.extend_from_slice(&particles.positions()[particles.listed()..particles.dense()]);
-        self.build_list(saved.skin, parallelism);
+        let unlisted = &particles.positions()[particles.listed()..particles.dense()];
+        let reference = [&saved.reference, unlisted].concat();
+        let reach = (self.radius, saved.skin);
+        Self::build_list(&mut self.list, &self.grid, &self.still, &reference, reach, parallelism);
         self.motion = saved.motion;
     }
 
@@ -329,7 +348,8 @@ impl Neighbors {
         self.grid.memory_bytes()
             + self.still.iter().map(Grid::memory_bytes).sum::<usize>()
             + self.list.memory_bytes()
-            + self.reference.capacity() * size_of::<Vector>()
+            + held(&self.reference)
+            + self.scratch.memory_bytes()
     }
 }
 

@@ -1,5 +1,6 @@
 //! Two vectors of each row side by side, so that a pass fetches both of a neighbour by one load.
 
+use crate::bytes::held;
 use crate::math::Vector;
 
 /// Two vectors of one row.
@@ -12,7 +13,7 @@ pub struct Records(Vec<Record>);
 impl Records {
     /// Memory held [bytes].
     pub fn memory_bytes(&self) -> usize {
-        self.0.capacity() * size_of::<Record>()
+        held(&self.0)
     }
 
     pub(super) fn rows_mut(&mut self, rows: usize) -> &mut [Record] {

@@ -138,9 +138,8 @@ impl Solver {
         self.world.timings.spent()
     }
 
-    /// Memory held by particles, lists and indexes [bytes].
+    /// Memory held by particles, lists, indexes, constraint groups and effects [bytes].
     pub fn memory_bytes(&self) -> usize {
-        let world = &self.world;
-        world.parts.particles.memory_bytes() + world.parts.neighbors.memory_bytes() + world.rows.memory_bytes()
+        self.world.memory_bytes()
     }
 }

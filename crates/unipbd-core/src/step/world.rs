@@ -1,5 +1,6 @@
 //! Everything a run holds, and the frame loop over it.
 
+use crate::bytes::held;
 use std::sync::OnceLock;
 
 use super::integrate::BodyForce;
@@ -298,6 +299,15 @@ impl World {
             walls: &parts.walls,
             parallelism: parts.parallelism,
         }
+    }
+
+    pub fn memory_bytes(&self) -> usize {
+        let parts = &self.parts;
+        let shared = parts.particles.memory_bytes() + parts.neighbors.memory_bytes() + self.rows.memory_bytes();
+        let groups = parts.groups.iter().map(|group| group.memory_bytes()).sum::<usize>();
+        let effects = parts.effects.iter().map(|effect| effect.memory_bytes()).sum::<usize>();
+        let room = self.corrections.memory_bytes() + self.changes.memory_bytes() + held(&self.velocities);
+        shared + groups + effects + room
     }
 
     fn remove(&mut self) -> u64 {

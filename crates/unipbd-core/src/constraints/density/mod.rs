@@ -11,6 +11,7 @@ mod solve;
 pub use settings::{DensityMaterial, DensitySettings};
 
 use super::{ConstraintGroup, Corrections, DensityColumns, Needs, Substep};
+use crate::bytes::held;
 use crate::kernel::Kernel;
 use crate::math::{Real, Vector};
 use crate::scene::GradientPoint;
@@ -44,6 +45,10 @@ struct Sums {
 }
 
 impl Sums {
+    fn memory_bytes(&self) -> usize {
+        held(&self.value) + held(&self.gradient) + held(&self.response)
+    }
+
     fn resize(&mut self, rows: usize) {
         self.value.resize(rows, 0.0);
         self.gradient.resize(rows, Vector::ZERO);
@@ -133,6 +138,17 @@ impl ConstraintGroup for Density {
         self.load_walls(now, out);
         self.repel(now, out);
         self.press_apart(now, out);
+    }
+
+    fn memory_bytes(&self) -> usize {
+        held(&self.error)
+            + held(&self.multiplier)
+            + held(&self.step)
+            + held(&self.wall_gradient)
+            + held(&self.middle)
+            + held(&self.strength)
+            + self.sums.memory_bytes()
+            + self.records.memory_bytes()
     }
 
     fn violation(&self) -> Option<f64> {
