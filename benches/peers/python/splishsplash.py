@@ -6,7 +6,7 @@ import tempfile
 import time
 
 dx, width, height, tank_width, tank_height, seconds, look = map(float, sys.argv[1:8])
-method = sys.argv[8]
+method, _, error = sys.argv[8].partition(":")
 os.environ["OMP_NUM_THREADS"] = "1"
 import numpy as np  # noqa: E402
 import pysplishsplash as sph  # noqa: E402
@@ -24,7 +24,7 @@ scene = {
     "Configuration": {
         "particleRadius": dx / 2, "sim2D": True, "numberOfStepsPerRenderUpdate": 1, "density0": 1000,
         "simulationMethod": 4 if method == "dfsph" else 2, "gravitation": [0, -9.81, 0], "cflMethod": 0,
-        "timeStepSize": dt, "maxIterations": 100 if method == "dfsph" else 5, "maxError": 0.1,
+        "timeStepSize": dt, "maxIterations": 100 if method == "dfsph" else 5, "maxError": float(error or 0.1),
         "stopAt": seconds, "pause": False, "boundaryHandlingMethod": 0,
     },
     "Materials": [{"id": "Fluid"}],
@@ -61,5 +61,5 @@ def after_step():
 
 base.setTimeStepCB(after_step)
 base.runSimulation()
-name = "SPlisHSPlasH " + ("DFSPH 0.1 %" if method == "dfsph" else "PBF, 5 iterations")
+name = "SPlisHSPlasH " + (f"DFSPH {error} %" if method == "dfsph" else "PBF, 5 iterations")
 print(json.dumps({"solver": name, "time": state["time"], "steps": state["steps"], "looks": looks}))

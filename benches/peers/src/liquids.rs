@@ -22,19 +22,19 @@ impl Runs for Ours {
     }
 }
 
-/// unipbd, with as many substeps as it wants for this target compression.
-pub fn unipbd(case: &Case, target: f64, threads: usize) -> Outcome {
+/// unipbd, with this kernel radius over the spacing and as many substeps as it wants for this target compression.
+pub fn unipbd(case: &Case, radius: f64, target: f64, threads: usize) -> Outcome {
     let scene = Scene {
         spacing: case.dx,
         liquid: vec![Liquid::new("water", 1000.0)],
         block: vec![Block::new("water", [0.0, 0.0], case.block)],
         tank: vec![Tank::new([0.0, 0.0], case.tank)],
-        solver: SolverSettings { target_compression: target, ..SolverSettings::default() },
+        solver: SolverSettings { kernel_radius: radius, target_compression: target, ..SolverSettings::default() },
         ..Scene::default()
     };
     let options = BuildOptions { threads: Some(threads), ..BuildOptions::default() };
     let solver = scene.build(options).unwrap_or_else(|problems| panic!("{problems}"));
-    run(case, format!("unipbd, target {} %", 100.0 * target), &mut Ours(solver))
+    run(case, format!("unipbd, h = {radius} dx, target {} %", 100.0 * target), &mut Ours(solver))
 }
 
 struct Salva {

@@ -1,6 +1,7 @@
 //! unipbd beside other solvers, in one run: `benches/peers.sh` prepares all of them and starts this.
 //!
-//! `unipbd-peers [--particles 5000,20000] [--seconds 2] [--bodies 5000] [--rows 100] [--only liquids|bodies] [--pbf yes]`
+//! `unipbd-peers [--particles 5000,20000] [--seconds 2] [--bodies 5000] [--rows 100] [--only liquids|bodies] [--pbf yes]
+//! [--radius 3,2]`
 
 mod case;
 mod chart;
@@ -14,7 +15,7 @@ use case::{Case, Outcome};
 use rigid::{Kind, Settled};
 
 /// Target compressions that unipbd tries, the loosest first.
-const TARGETS: [f64; 5] = [0.1, 0.03, 0.01, 0.003, 0.001];
+const TARGETS: [f64; 6] = [0.1, 0.03, 0.01, 0.006, 0.003, 0.001];
 
 fn option(name: &str, default: &str) -> String {
     let arguments: Vec<String> = std::env::args().collect();
@@ -53,11 +54,16 @@ fn main() {
 fn liquids_table(case: &Case, bars: &mut Vec<(String, f64)>) {
     let particles = case.lattice().len();
     println!("## {} of {particles} particles, {} s\n", case.name, case.seconds);
-    let ours: Vec<Outcome> = TARGETS.iter().map(|&target| liquids::unipbd(case, target, 1)).collect();
+    let radii = option("--radius", "3,2");
+    let radii = radii.split(',').map(|radius| radius.parse::<f64>().expect("--radius takes numbers"));
+    let settings = radii.flat_map(|radius| TARGETS.map(|target| (radius, target)));
+    let ours: Vec<Outcome> = settings.map(|(radius, target)| liquids::unipbd(case, radius, target, 1)).collect();
     let dt = (0.1 * case.dx).min(0.002);
     let mut peers = vec![
-        python::peer(case, "splishsplash.py", "dfsph").map_err(|why| format!("SPlisHSPlasH DFSPH: skipped, {why}")),
+        python::peer(case, "splishsplash.py", "dfsph:0.1").map_err(|why| format!("SPlisHSPlasH DFSPH: skipped, {why}")),
+        python::peer(case, "splishsplash.py", "dfsph:1").map_err(|why| format!("SPlisHSPlasH DFSPH: skipped, {why}")),
         Ok(liquids::salva(case, 0.001, dt)),
+        Ok(liquids::salva(case, 0.01, dt)),
         Ok(liquids::salva(case, 0.05, dt)),
         python::peer(case, "taichi_pbf.py", "1").map_err(|why| format!("taichi: skipped, {why}")),
     ];
