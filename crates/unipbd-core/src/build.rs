@@ -11,7 +11,7 @@ use crate::effects::{
     VorticityConfinement,
 };
 use crate::math::{Vector, Vector64, real, vector};
-use crate::neighbors::{Cover, Neighbors, Periodic, PeriodicAxis};
+use crate::neighbors::{Cover, ListCost, Neighbors, Periodic, PeriodicAxis};
 use crate::observe::Material;
 use crate::parallel::Parallelism;
 use crate::particles::{NewParticle, OptionalColumns, Particles};
@@ -84,13 +84,16 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     for (id, body, place) in &ropes.tied {
         rigid.iter_mut().for_each(|rigid| rigid.tie(*id, body, *place));
     }
+    // Sums and corrections of each iteration, and about one pass for each effect.
+    let passes = 2.0 * f64::from(scene.solver.iterations) + effects.len() as f64;
+    let cost = ListCost { radius: scene.solver.kernel_radius, passes };
     Parts {
         rigid,
         particles,
         materials: shown_materials(scene),
         forces: scene.materials().map(|material| body_force(material, scene)).collect(),
         walls: Walls::new(scene),
-        neighbors: Neighbors::new(periodic, real(settings.kernel_radius), real(least_skin)),
+        neighbors: Neighbors::new(periodic, real(settings.kernel_radius), real(least_skin), cost),
         cover,
         groups: groups(scene, settings, ropes),
         effects,

@@ -8,6 +8,7 @@
 //! 4. [`SkinList`] keeps such a list while the particles have moved less than its skin.
 
 mod cells;
+mod cost;
 mod grid;
 mod list;
 mod order;
@@ -16,6 +17,7 @@ mod search;
 mod skin;
 mod sparse;
 
+pub use cost::ListCost;
 pub use grid::{Cursor, Grid};
 pub use list::{Block, Chunk, Entries, LANES, NeighborList};
 pub use periodic::{Periodic, PeriodicAxis};

@@ -1,17 +1,11 @@
 //! The neighbour search of a run: grid, list and skin, kept valid while particles move.
 
-use super::{Cursor, Grid, Motion, NeighborList, Periodic, SkinList};
+use super::{Cursor, Grid, ListCost, Motion, NeighborList, Periodic, SkinList};
 use crate::bytes::{Damage, Reader, Writer, held};
 use crate::math::{Real, Vector};
 use crate::parallel::Parallelism;
 use crate::particles::{Particles, Scratch};
 use std::ops::Range;
-
-/// Cost of a list build over that of the passes of one substep (measured, order of magnitude): decides
-/// for how many substeps a list should last.
-const BUILD_COST: Real = 0.6;
-/// Longest skin, as a part of the kernel radius: beyond it the passes see too many distant pairs.
-const LONGEST_SKIN: Real = 0.2;
 
 /// For which positions a list must hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -96,6 +90,7 @@ pub struct Neighbors {
     radius: Real,
     /// Skin kept for the small moves of the projection, so that velocity passes find their pairs.
     least_skin: Real,
+    cost: ListCost,
     /// Where the list is made, where it must cover more than the predicted positions.
     reference: Vec<Vector>,
     /// The sleeping rows, behind those of `grid`: those near others that are awake, then the rest.
@@ -107,13 +102,14 @@ pub struct Neighbors {
 
 impl Neighbors {
     /// A search for pairs within `radius` [m].
-    pub fn new(periodic: Periodic, radius: Real, least_skin: Real) -> Self {
+    pub fn new(periodic: Periodic, radius: Real, least_skin: Real, cost: ListCost) -> Self {
         Neighbors {
             grid: Grid::new(periodic),
             list: SkinList::default(),
             motion: Motion::default(),
             radius,
             least_skin,
+            cost,
             reference: Vec::new(),
             still: [Grid::new(periodic), Grid::new(periodic)],
             still_sorted: true,
@@ -275,12 +271,9 @@ impl Neighbors {
         }
     }
 
-    /// The cheapest skin for particles that come nearer by up to `step` per substep: a list that lasts
-    /// k substeps costs a build/k and passes over (h + k step)^2 pairs.
+    /// The skin for particles that come nearer to each other by up to `step` per substep.
     fn skin(&self, step: Real, cover: Cover) -> Real {
-        let lasting = (BUILD_COST * self.radius / step.max(1e-6 * self.radius)).sqrt().floor();
-        let longest = LONGEST_SKIN * self.radius;
-        let wanted = if lasting < 2.0 { 0.0 } else { (lasting * step).min(longest) };
+        let wanted = self.cost.skin(step / self.radius) * self.radius;
         // From the middle of the substep both its ends are half a step away.
         let needed = if cover == Cover::StartAndPredicted { 0.5 * step * 1.001 } else { 0.0 };
         wanted.max(self.least_skin).max(needed)
@@ -340,7 +333,7 @@ impl Neighbors {
 
     /// What the sleeping rows are sorted for [m].
     fn still_radius(&self) -> Real {
-        self.radius * (1.0 + LONGEST_SKIN)
+        self.radius * (1.0 + ListCost::LONGEST)
     }
 
     /// Memory held [bytes].

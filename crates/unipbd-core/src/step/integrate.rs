@@ -7,7 +7,7 @@
 use crate::constraints::Corrections;
 use crate::math::{Real, Vector, wide};
 use crate::neighbors::Periodic;
-use crate::parallel::Parallelism;
+use crate::parallel::{CHUNK_ROWS, Parallelism};
 use crate::particles::Particles;
 use crate::phase::Phase;
 use crate::walls::{Hit, Walls};
@@ -75,7 +75,7 @@ struct Moving<'a> {
 }
 
 impl Moving<'_> {
-    /// Sets the displacements and moves the positions along, x = x_n + (u + rem), of all but smoke.
+    /// Sets the displacements and moves the positions along, of all but smoke.
     #[inline(always)]
     fn shift(&self, displacement: &mut [Vector], position: &mut [Vector], new: impl Fn(usize, Vector) -> Vector) {
         let rows = displacement.len();
@@ -87,6 +87,11 @@ impl Moving<'_> {
                 position[k] = start[k] + (displacement[k] + remainder[k]);
             }
         }
+    }
+
+    /// Where a row is that was displaced so far: x = x_n + (u + rem).
+    fn place(&self, k: usize, displacement: Vector) -> Vector {
+        self.start[k] + (displacement + self.remainder[k])
     }
 }
 
@@ -103,15 +108,21 @@ pub(super) fn apply(particles: &mut Particles, corrections: &Corrections, walls:
             let (inverse_mass, steps) = (&inverse_mass[rows.clone()], &steps[rows.clone()]);
             let (start, remainder) = (&start[rows.clone()], &remainder[rows.clone()]);
             let moving = Moving { phase: &phase[rows], start, remainder };
-            moving.shift(displacement, position, |k, displacement| {
-                if inverse_mass[k] == 0.0 {
-                    return displacement;
-                }
-                let mut displacement = displacement + steps[k];
-                let place = start[k] + (displacement + remainder[k]);
-                meet_walls(&mut displacement, place, walls, |_, _| {});
-                displacement
+            moving.shift(displacement, position, |k, displacement| match inverse_mass[k] {
+                0.0 => displacement,
+                _ => displacement + steps[k],
             });
+            if walls.is_empty() {
+                return;
+            }
+            let mut distances = [0.0; CHUNK_ROWS];
+            walls.distances(position, &mut distances[..position.len()]);
+            for k in 0..position.len() {
+                if distances[k] < 0.0 && inverse_mass[k] > 0.0 && moving.phase[k] != Phase::Smoke {
+                    meet_walls(&mut displacement[k], position[k], walls, |_, _| {});
+                    position[k] = moving.place(k, displacement[k]);
+                }
+            }
         });
     }
 }

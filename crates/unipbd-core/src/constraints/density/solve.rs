@@ -3,6 +3,7 @@
 use super::{Density, DensityMaterial};
 use crate::constraints::{Corrections, Substep};
 use crate::math::{Real, Vector, wide};
+use crate::parallel::CHUNK_ROWS;
 use crate::phase::{MaterialIndex, Phase};
 use crate::scene::GradientPoint;
 use crate::simd::near::{self, Near, Work};
@@ -250,20 +251,19 @@ impl BehindWalls<'_> {
         if walls.is_empty() {
             return;
         }
-        let rows = first..first + parts.len();
-        let positions = &self.positions[rows.clone()];
-        let positions_of_slopes = self.gradient_positions.map(|positions| &positions[rows]);
-        walls.for_each_near(positions, coverage.radius(), |k| {
-            let (part, slope) = walls.coverage(positions[k], coverage);
-            parts[k] = part;
-            if positions_of_slopes.is_none() {
-                slopes[k] = slope;
+        let (rows, reach) = (first..first + parts.len(), coverage.radius());
+        let mut distances = [0.0; CHUNK_ROWS];
+        let mut near = |points: &[Vector], visit: &mut dyn FnMut(usize, (Real, Vector))| {
+            let distances = &mut distances[..points.len()];
+            walls.distances(points, distances);
+            for (k, _) in distances.iter().enumerate().filter(|(_, distance)| **distance < reach) {
+                visit(k, walls.coverage(points[k], coverage));
             }
-        });
-        if let Some(positions) = positions_of_slopes {
-            walls.for_each_near(positions, coverage.radius(), |k| {
-                slopes[k] = walls.coverage(positions[k], coverage).1;
-            });
+        };
+        near(&self.positions[rows.clone()], &mut |k, behind| (parts[k], slopes[k]) = behind);
+        if let Some(positions) = self.gradient_positions {
+            slopes.fill(Vector::ZERO);
+            near(&positions[rows], &mut |k, behind| slopes[k] = behind.1);
         }
     }
 }

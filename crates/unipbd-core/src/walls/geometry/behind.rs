@@ -2,7 +2,6 @@
 
 use super::{Rectangle, Walls};
 use crate::math::{Real, Vector};
-use crate::parallel::CHUNK_ROWS;
 use crate::walls::Coverage;
 
 impl Walls {
@@ -36,20 +35,9 @@ impl Walls {
         (inside, gradient)
     }
 
-    /// Visits the numbers of all points nearer than `reach` to any wall, and of a few more. Where most
-    /// are far from all walls this costs little more than to tell so.
-    pub fn for_each_near(&self, points: &[Vector], reach: Real, mut visit: impl FnMut(usize)) {
-        let mut distances = [0.0; CHUNK_ROWS];
-        for (first, points) in (0..).step_by(CHUNK_ROWS).zip(points.chunks(CHUNK_ROWS)) {
-            let distances = &mut distances[..points.len()];
-            self.distances(points, distances);
-            let near = distances.iter().enumerate().filter(|(_, distance)| **distance < reach);
-            near.for_each(|(k, _)| visit(first + k));
-        }
-    }
-
-    /// The distance of each point to the nearest wall, or less.
-    fn distances(&self, points: &[Vector], distances: &mut [Real]) {
+    /// The distance of each point to the nearest wall, or less; negative inside. Where most points are
+    /// far from all walls, this tells so at little cost.
+    pub fn distances(&self, points: &[Vector], distances: &mut [Real]) {
         distances.fill(Real::INFINITY);
         let nearer = |distance: Real, other: Real| if distance < other { distance } else { other };
         for plane in &self.planes {
@@ -188,10 +176,12 @@ mod tests {
         let coverage = Coverage::new(&Kernel::new(1.5));
         let point = |k: usize| Vector::new((k % 37) as Real * 0.33 - 1.0, (k % 41) as Real * 0.27 - 1.0);
         let points: Vec<_> = (0..1000).map(point).collect();
-        let mut far = vec![true; points.len()];
-        walls.for_each_near(&points, coverage.radius(), |k| far[k] = false);
+        let mut distances = vec![0.0; points.len()];
+        walls.distances(&points, &mut distances);
+        let far = |k: usize| distances[k] >= coverage.radius();
         let inside = |k: usize| walls.coverage(points[k], &coverage).0;
-        assert!((0..1000).all(|k| !far[k] || inside(k) == 0.0));
-        assert!((0..1000).filter(|&k| far[k]).count() > 50);
+        assert!((0..1000).all(|k| !far(k) || inside(k) == 0.0));
+        assert!((0..1000).filter(|&k| far(k)).count() > 50);
+        assert!((0..1000).all(|k| (distances[k] < 0.0) == walls.hits(points[k]).next().is_some()));
     }
 }
