@@ -47,7 +47,9 @@ fn states_saved_between_two_list_builds_bring_the_list_along() {
             });
             assert_eq!(other.state_hash(), run.state_hash(), "{name}");
         }
-        assert!(between > 10, "{name}: lists outlive frames, so some states lie between two builds");
+        // Where particles are emitted, each substep has a list of its own.
+        let lasting = scene.emitter.is_empty();
+        assert!(between > 10 || !lasting, "{name}: lists outlive frames, so some states lie between two builds");
     }
 }
 
