@@ -113,28 +113,36 @@ fn overlap(world: &PhysicsWorld) -> f64 {
     points.map(|point| f64::from(-point.dist)).fold(0.0, f64::max)
 }
 
-/// Both on a heap that settles for some seconds, frame by frame in turn.
-pub fn settle(kind: Kind, count: usize, seconds: f64, substeps: u32) -> [Settled; 2] {
+/// Substeps of rapier2d in a heap: its default.
+const THEIR_SUBSTEPS: u32 = 4;
+
+/// A heap that settles for some seconds, frame by frame in turn: unipbd by each of these numbers of
+/// substeps, then rapier2d.
+pub fn settle(kind: Kind, count: usize, seconds: f64, substeps: &[u32]) -> Vec<(u32, Settled)> {
     let (width, places) = heap(count);
-    let mut ours = ours(kind, &places, Some(width), substeps);
-    let (mut theirs, _) = theirs(kind, &places, Some(width), substeps as usize);
+    let mut mine: Vec<_> = substeps.iter().map(|&n| ours(kind, &places, Some(width), n)).collect();
+    let (mut theirs, _) = theirs(kind, &places, Some(width), THEIR_SUBSTEPS as usize);
     let frames = (seconds * FPS) as u32;
-    let (mut mine, mut peer) = (0.0, 0.0);
+    let mut spent = vec![0.0; mine.len() + 1];
     for _ in 0..frames {
-        let begin = ProcessTime::now();
-        ours.step_frame().expect("the heap does not diverge");
-        mine += begin.elapsed().as_secs_f64();
+        for (solver, spent) in mine.iter_mut().zip(&mut spent) {
+            let begin = ProcessTime::now();
+            solver.step_frame().expect("the heap does not diverge");
+            *spent += begin.elapsed().as_secs_f64();
+        }
         let begin = ProcessTime::now();
         theirs.step();
-        peer += begin.elapsed().as_secs_f64();
+        spent[mine.len()] += begin.elapsed().as_secs_f64();
     }
-    let settled = |solver, wall: f64, penetration| Settled {
-        solver,
-        milliseconds: 1e3 * wall / f64::from(frames),
-        penetration,
-        stands: true,
+    let depths = mine.iter().map(|solver| solver.diagnostics().contact_penetration).chain([overlap(&theirs)]);
+    let settled = |(k, penetration): (usize, f64)| {
+        let (solver, substeps) = match substeps.get(k) {
+            Some(&substeps) => ("unipbd", substeps),
+            None => ("rapier2d", THEIR_SUBSTEPS),
+        };
+        (substeps, Settled { solver, milliseconds: 1e3 * spent[k] / f64::from(frames), penetration, stands: true })
     };
-    [settled("unipbd", mine, ours.diagnostics().contact_penetration), settled("rapier2d", peer, overlap(&theirs))]
+    depths.enumerate().map(settled).collect()
 }
 
 /// Steps until a pyramid falls or the time is over: whether its top, which `step` returns, stayed within
