@@ -1,7 +1,7 @@
 //! A pool at rest falls asleep, costs nothing, and wakes where something happens to it.
 
 use unipbd_core::edit::Points;
-use unipbd_core::scene::{Block, BodyDescription, Liquid, Scene, SolverSettings, Substeps, Tank};
+use unipbd_core::scene::{Block, BodyDescription, Emitter, Liquid, Scene, SolverSettings, Substeps, Tank};
 use unipbd_core::{BuildOptions, Edit, Phase, Solver, Vector64};
 
 const SPACING: f64 = 0.1;
@@ -203,4 +203,19 @@ fn a_state_saved_while_a_part_sleeps_goes_on_bit_for_bit() {
     assert_eq!(other.particles().asleep(), asleep);
     run(&mut other, 1.0);
     assert_eq!(other.state_hash(), solver.state_hash());
+}
+
+#[test]
+fn an_emitter_that_opens_wakes_what_its_stream_hits() {
+    let opens = 30.0;
+    let tap = Emitter { direction: [0.0, -1.0], start: opens, ..Emitter::new("water", [1.0, 2.6], 0.5, 2.0) };
+    let mut solver = build(&Scene { emitter: vec![tap], ..pool(120.0, 16.0, true) }, 1);
+    run_to_sleep(&mut solver, opens);
+    let (count, closed) = (solver.particles().len(), opens - solver.time());
+    assert_eq!(run(&mut solver, closed - 0.1), 0, "a closed emitter wakes nobody");
+    run(&mut solver, 0.8);
+    let (now, awake) = (solver.particles().len(), solver.particles().awake());
+    println!("{count} slept; {} came, {awake} awake", now - count);
+    assert!(now > count && awake > now - count, "those that came and those that they hit are awake");
+    assert!(solver.particles().asleep() > count / 4, "far away they sleep on");
 }

@@ -10,22 +10,7 @@ fn water(min: [f64; 2], max: [f64; 2]) -> Scene {
 }
 
 fn jet() -> Scene {
-    let emitter = Emitter {
-        name: String::new(),
-        material: "air".into(),
-        position: [0.0; 2],
-        direction: [0.0, 1.0],
-        width: 1.0,
-        speed: 2.0,
-        profile: Default::default(),
-        temperature: 0.0,
-        jitter: 0.0,
-        start: 1.0,
-        stop: None,
-        throttle: true,
-        sheath: None,
-        smoke: None,
-    };
+    let emitter = Emitter { start: 1.0, ..Emitter::new("air", [0.0; 2], 1.0, 2.0) };
     let gas = Gas { name: "air".into(), lifetime: Some(2.0), ..Gas::default() };
     Scene { gas: vec![gas], emitter: vec![emitter], duration: 10.0, ..Scene::default() }
 }

@@ -90,20 +90,13 @@ fn gas_with_smoke_steps_without_allocating() {
     };
     // A short puff with smoke in it: nothing is emitted any more when the counting begins.
     let puff = Emitter {
-        name: String::new(),
-        material: "air".into(),
-        position: [0.0, 0.0],
-        direction: [0.0, 1.0],
-        width: 2.0,
-        speed: 3.0,
         profile: Profile::Uniform,
         temperature: 1.0,
         jitter: 0.1,
-        start: 0.0,
         stop: Some(0.5),
         throttle: false,
-        sheath: None,
         smoke: Some(SmokeSource { material: "smoke".into(), per_particle: 2 }),
+        ..Emitter::new("air", [0.0, 0.0], 2.0, 3.0)
     };
     let scene = Scene {
         gas: vec![gas],

@@ -32,20 +32,5 @@ pub fn body(name: &str, position: [f64; 2]) -> BodyDescription {
 
 /// A nozzle that blows upwards.
 pub fn nozzle(material: &str, position: [f64; 2], width: f64, speed: f64) -> Emitter {
-    Emitter {
-        name: String::new(),
-        material: material.to_owned(),
-        position,
-        direction: [0.0, 1.0],
-        width,
-        speed,
-        profile: Profile::Uniform,
-        temperature: 0.0,
-        jitter: 0.05,
-        start: 0.0,
-        stop: None,
-        throttle: true,
-        sheath: None,
-        smoke: None,
-    }
+    Emitter { profile: Profile::Uniform, ..Emitter::new(material, position, width, speed) }
 }

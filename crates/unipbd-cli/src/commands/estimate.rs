@@ -142,20 +142,13 @@ mod tests {
     #[test]
     fn emitted_particles_are_counted_whether_or_not_they_live() {
         let emitter = Emitter {
-            name: String::new(),
-            material: "air".into(),
-            position: [0.0, 0.0],
-            direction: [0.0, 1.0],
-            width: 0.2,
-            speed: 1.0,
             profile: Profile::Uniform,
-            temperature: 1.0,
-            jitter: 0.0,
             start: 1.0,
             stop: Some(3.0),
             throttle: false,
             sheath: Some(Sheath { thickness: 0.1, speed: Some(0.5), temperature: 0.0 }),
             smoke: Some(SmokeSource { material: "smoke".into(), per_particle: 4 }),
+            ..Emitter::new("air", [0.0, 0.0], 0.2, 1.0)
         };
         let scene = Scene {
             spacing: 0.1,

@@ -128,6 +128,28 @@ pub struct SmokeSource {
     pub per_particle: u32,
 }
 
+impl Emitter {
+    /// A nozzle that blows upwards from its middle [m], this wide [m] and at this speed [m/s], from the start on.
+    pub fn new(material: &str, position: [f64; 2], width: f64, speed: f64) -> Self {
+        Emitter {
+            name: String::new(),
+            material: material.to_owned(),
+            position,
+            direction: up(),
+            width,
+            speed,
+            profile: Profile::default(),
+            temperature: 0.0,
+            jitter: emitter_jitter(),
+            start: 0.0,
+            stop: None,
+            throttle: yes(),
+            sheath: None,
+            smoke: None,
+        }
+    }
+}
+
 fn up() -> [f64; 2] {
     [0.0, 1.0]
 }

@@ -39,19 +39,11 @@ pub fn liquid() -> Scene {
 pub fn plume() -> Scene {
     let emitter = Emitter {
         name: "nozzle".into(),
-        material: "air".into(),
-        position: [0.0, 0.0],
-        direction: [0.0, 1.0],
-        width: 0.2,
-        speed: 1.2,
         profile: Profile::Uniform,
         temperature: 1.0,
-        jitter: 0.05,
-        start: 0.0,
-        stop: None,
-        throttle: true,
         sheath: Some(Sheath { thickness: 0.15, speed: None, temperature: 0.0 }),
         smoke: Some(SmokeSource { material: "soot".into(), per_particle: 2 }),
+        ..Emitter::new("air", [0.0, 0.0], 0.2, 1.2)
     };
     let air = Gas { drag: 30.0, vorticity: 2.0, lifetime: Some(0.6), keep_radius: Some(0.3), ..Gas::default() };
     Scene {
