@@ -251,7 +251,10 @@ impl Solver {
     }
 
     fn pressures<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        self.read(py, |solver, rows| arrays::gathered(py, &solver.pressures(), rows, |pressure| pressure))
+        self.read(py, |solver, rows| {
+            let pressures = py.detach(|| solver.pressures());
+            arrays::gathered(py, pressures, rows, f64::from)
+        })
     }
 
     /// None where the scene has no temperatures.

@@ -4,18 +4,24 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use unipbd_core::scene::{GradientPoint, KernelKind, SolverSettings, Substeps};
-use unipbd_validation::report::{Entry, TARGETS, sheet};
-use unipbd_validation::stress::{Ending, NAMED, fuzz, random_scene, summary};
+use unipbd_validation::report::{Entry, TARGETS, sheet, with_section};
+use unipbd_validation::stress::map::MAPS;
+use unipbd_validation::stress::{Ending, NAMED, chart, fuzz, random_scene, summary};
 use unipbd_validation::{cases, sweep};
 
 const HELP: &str =
-    "usage: unipbd-validation [--quick | --full | --sweep [--full] | --stress [--full] | CASE [RESOLUTION] [SETTING=VALUE...]]
+    "usage: unipbd-validation [--quick | --full | --sweep [--full] | --stress [--full] | --map | CASE [RESOLUTION] [SETTING=VALUE...]]
   --quick   every case at its quick size (default)
   --full    every case at three resolutions and three targets; writes docs/accuracy.md
   --sweep   run time against error for four cases; writes docs/accuracy/*.csv and *.svg
   --stress  scenes that ask too much, and 100 random ones (2000 with --full)
+  --map     what is stable: density ratio, depth and speed against substeps; its part of docs/accuracy.md and
+            docs/images/stability.svg (--full does it too)
   CASE      one case; settings are target, substeps, iterations, tolerance, kernel, kernel_radius, relaxation,
             gradients, constraint_mixing, artificial_pressure";
+
+/// The accuracy sheet.
+const SHEET: &str = "docs/accuracy.md";
 
 fn main() -> ExitCode {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
@@ -25,6 +31,8 @@ fn main() -> ExitCode {
         Ok(true)
     } else if has("--stress") {
         Ok(run_stress(if has("--full") { 2000 } else { 100 }))
+    } else if has("--map") {
+        run_map()
     } else if has("--sweep") {
         run_sweeps(has("--full"))
     } else if has("--full") {
@@ -134,9 +142,35 @@ fn run_full() -> Result<bool, Box<dyn std::error::Error>> {
                 entries.push(entry);
             }
         }
-        std::fs::write("docs/accuracy.md", sheet(&entries, &charts))?;
+        std::fs::write(SHEET, sheet(&entries, &charts))?;
     }
+    run_map()
+}
+
+/// Surveys all maps; writes the picture and the section of the sheet.
+fn run_map() -> Result<bool, Box<dyn std::error::Error>> {
+    let surveyed: Vec<chart::Surveyed<'_>> = MAPS
+        .iter()
+        .map(|map| {
+            let row = |value: &f64| {
+                let cells = map.row(*value);
+                println!("{} {value}: {cells:?}", map.name);
+                cells
+            };
+            (map, map.rows.iter().map(row).collect())
+        })
+        .collect();
+    let picture = Path::new("docs").join(chart::PICTURE);
+    picture.parent().map_or(Ok(()), std::fs::create_dir_all)?;
+    std::fs::write(picture, chart::picture(&surveyed))?;
+    write_section(chart::HEADING, &chart::section(&surveyed))?;
     Ok(true)
+}
+
+/// Puts a section into the sheet; the rest of it stays.
+fn write_section(heading: &str, body: &str) -> std::io::Result<()> {
+    let document = std::fs::read_to_string(SHEET)?;
+    std::fs::write(SHEET, with_section(&document, heading, body))
 }
 
 fn run_sweeps(full: bool) -> Result<bool, Box<dyn std::error::Error>> {

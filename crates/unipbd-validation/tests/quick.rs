@@ -2,6 +2,7 @@
 
 use unipbd_core::scene::{GradientPoint, SolverSettings, Substeps};
 use unipbd_validation::report::{Entry, sheet};
+use unipbd_validation::stress::map::MAPS;
 use unipbd_validation::stress::{Ending, NAMED, fuzz};
 use unipbd_validation::{cases, report};
 
@@ -80,6 +81,26 @@ fn half_way_with_a_wide_kernel_a_wave_loses_less_than_a_sixth_per_period() {
     assert!(figure("standing_wave", 64, &half_way(), "period error").abs() <= 0.045);
     assert!(figure("dam_break", 20, &half_way(), "worst C") <= 0.06);
     assert!(figure("dam_break", 20, &half_way(), "energy gain") <= 0.005);
+}
+
+#[test]
+fn a_column_presses_with_its_weight() {
+    let solver = report::settings(0.01);
+    assert!(figure("column", 20, &solver, "pressure slope error").abs() <= 0.02);
+    assert!(figure("column", 20, &solver, "error of the force on the floor").abs() <= 0.001);
+    assert!(figure("two_layers", 24, &solver, "pressure error of the upper layer").abs() <= 0.02);
+    assert!(figure("two_layers", 24, &solver, "pressure error of the lower layer").abs() <= 0.02);
+    assert!(figure("two_layers", 24, &solver, "error of the force on the floor").abs() <= 0.002);
+}
+
+#[test]
+fn too_few_substeps_stay_finite_and_contained_and_enough_keep_the_energy() {
+    for (map, row, few, enough) in [(&MAPS[0], 10.0, 2, 8), (&MAPS[1], 30.0, 1, 8), (&MAPS[2], 100.0, 2, 16)] {
+        let few = map.cell(row, Substeps::Fixed(few));
+        assert_eq!(few.broken, None, "{} {row}: {few:?}", map.name);
+        let enough = map.cell(row, Substeps::Fixed(enough));
+        assert!(enough.is_sound() && enough.worst < few.worst, "{} {row}: {enough:?} {few:?}", map.name);
+    }
 }
 
 #[test]

@@ -129,6 +129,13 @@ pub trait ConstraintGroup: Send + Sync {
         None
     }
 
+    /// Pressure over density by row, from the multipliers of the last substep [m^2/s^2], where this is a
+    /// density group that can tell it from the momentum they carry.
+    fn measure_pressure(&self, now: Substep<'_>) -> Option<Vec<Real>> {
+        let _ = now;
+        None
+    }
+
     /// What a saved state must hold beside the particles: words that [`restore`](Self::restore) takes.
     fn save(&self) -> Vec<u64> {
         Vec::new()

@@ -47,6 +47,11 @@ pub trait Effect: Send + Sync {
     fn memory_bytes(&self) -> usize {
         0
     }
+
+    /// The part of what the scene asks for that was stable in the last substep: 1 unless it was cut.
+    fn granted(&self) -> f64 {
+        1.0
+    }
 }
 
 /// Changes of the dense rows, zero unless an effect adds to them.

@@ -16,7 +16,8 @@ pub struct Liquid {
     pub particle_mass: Option<f64>,
     /// XSPH viscosity per substep, 0 to 1: the fraction of velocity differences that is smoothed.
     pub viscosity: f64,
-    /// Kinematic viscosity nu; a physical one, beside the cheap smoothing above [m^2/s].
+    /// Kinematic viscosity nu; a physical one, beside the cheap smoothing above [m^2/s]. Where a substep is too
+    /// long for it, it is cut to what is stable, with a warning.
     pub kinematic_viscosity: f64,
     /// Whether it has a free surface, or fills its domain and resists dilation too.
     pub surface: LiquidSurface,

@@ -84,12 +84,13 @@ impl Solver {
         self.world.iterated
     }
 
-    /// Pressure over density by row, from the multipliers of the last substep: lambda/(m dt^2) [m^2/s^2].
-    pub fn pressures(&self) -> Vec<f64> {
-        let (particles, dt) = (self.particles(), self.world.clock.dt);
-        let inverse = if dt > 0.0 { self.world.parts.pressure_scale / (dt * dt) } else { 0.0 };
-        let pressure = |row: usize| f64::from(particles.multiplier[row] * particles.inverse_mass[row]) * inverse;
-        (0..particles.len()).map(pressure).collect()
+    /// Pressure over density by row [m^2/s^2], from the momentum that the multipliers of the last substep
+    /// carry. Measured when first asked for after a frame.
+    pub fn pressures(&self) -> &[Real] {
+        self.look_on_threads(|world| {
+            world.pressures();
+        });
+        self.world.pressures()
     }
 
     /// Temperatures by row; empty when no material has one.

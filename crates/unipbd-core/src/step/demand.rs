@@ -32,6 +32,15 @@ impl World {
         choice.substeps
     }
 
+    pub(super) fn warn_of_cut(&mut self, effect: &str, granted: f64) {
+        let wanted = (f64::from(self.clock.substeps) / granted).ceil();
+        let message = format!(
+            "{effect} cut to {:.3} of what the scene asks for: {wanted} substeps per frame would bear it, {} were taken",
+            granted, self.clock.substeps
+        );
+        self.events.push(Event { time: self.clock.time, severity: Severity::Warning, message });
+    }
+
     /// What the number of substeps follows from.
     pub fn demand(&self) -> Demand {
         let parts = &self.parts;

@@ -88,7 +88,7 @@ impl World {
             // Within a frame that an error interrupted there may be no list: the last substep's must do.
             return &self.parts.particles.density_error;
         }
-        self.measured.get_or_init(|| {
+        self.measured.density.get_or_init(|| {
             let now = World::now(&self.parts, &self.rows, &self.clock);
             let measured = self.parts.groups.iter().find_map(|group| group.measure_density(now));
             measured.unwrap_or_else(|| vec![0.0; self.parts.particles.len()])
@@ -168,13 +168,28 @@ impl World {
         all
     }
 
-    fn pressure_max(&self) -> f64 {
-        if self.clock.dt == 0.0 {
-            return 0.0;
-        }
+    /// Pressure over density by row; measured when first asked for.
+    pub(super) fn pressures(&self) -> &[Real] {
+        self.measured.pressure.get_or_init(|| {
+            if self.clock.dt == 0.0 {
+                return vec![0.0; self.parts.particles.len()];
+            }
+            let now = World::now(&self.parts, &self.rows, &self.clock);
+            let current = self.stages.contains(&Stage::FindNeighbors) && self.parts.neighbors.is_current();
+            let groups = self.parts.groups.iter().filter(|_| current);
+            let measured = groups.filter_map(|group| group.measure_pressure(now)).next();
+            measured.unwrap_or_else(|| self.pressures_of_multipliers())
+        })
+    }
+
+    /// lambda/(m dt^2), as on the lattice at rest: for groups that cannot tell better.
+    fn pressures_of_multipliers(&self) -> Vec<Real> {
+        let scale = (self.parts.pressure_scale / (self.clock.dt * self.clock.dt)) as Real;
         let particles = &self.parts.particles;
-        let pressure = |row: usize| particles.multiplier[row] * particles.inverse_mass[row];
-        let largest = self.parts.parallelism.max(particles.dense(), pressure);
-        self.parts.pressure_scale * f64::from(largest.max(0.0)) / (self.clock.dt * self.clock.dt)
+        (0..particles.len()).map(|row| particles.multiplier[row] * particles.inverse_mass[row] * scale).collect()
+    }
+
+    fn pressure_max(&self) -> f64 {
+        self.pressures().iter().map(|pressure| f64::from(*pressure)).fold(0.0, f64::max)
     }
 }

@@ -218,8 +218,24 @@ impl World {
             self.changes.reset(self.parts.particles.listed(), temperatures);
             effect.apply(World::now(&self.parts, &self.rows, &self.clock), &mut self.changes);
             self.take_up_changes();
+            self.note_cut(effect.name(), effect.granted());
         }
         self.parts.effects = effects;
+    }
+
+    /// Warns where an effect is cut to what is stable, once until it no longer is.
+    fn note_cut(&mut self, effect: &'static str, granted: f64) {
+        let known = self.cut.iter().position(|name| *name == effect);
+        match known {
+            Some(index) if granted >= 1.0 => drop(self.cut.remove(index)),
+            None if granted < 1.0 => {
+                self.cut.push(effect);
+                self.warn_of_cut(effect, granted);
+            }
+            _ => (),
+        }
+        let wanted = (f64::from(self.clock.substeps) / granted).ceil().min(f64::from(u32::MAX)) as u32;
+        self.choice.wanted = self.choice.wanted.max(wanted);
     }
 
     fn take_up_changes(&mut self) {

@@ -86,6 +86,15 @@ pub(crate) enum Population {
     Changed,
 }
 
+/// What is measured after a frame, once somebody asks for it, by row.
+#[derive(Default)]
+pub(crate) struct Measured {
+    /// Density errors at the positions of the last frame.
+    pub density: OnceLock<Vec<Real>>,
+    /// Pressure over density [m^2/s^2].
+    pub pressure: OnceLock<Vec<Real>>,
+}
+
 /// A run.
 pub(crate) struct World {
     pub parts: Parts,
@@ -94,14 +103,15 @@ pub(crate) struct World {
     pub stages: Vec<Stage>,
     pub events: Vec<Event>,
     pub timings: Timings,
-    /// Density errors at the positions of the last frame, once somebody asks for them.
-    pub(super) measured: OnceLock<Vec<Real>>,
+    pub(super) measured: Measured,
     pub(super) corrections: Corrections,
     pub(super) changes: Changes,
     /// Room for the velocities that groups change.
     pub(super) velocities: Vec<Vector>,
     /// Why the last frame took the substeps it took.
     pub(super) choice: Choice,
+    /// Effects that are cut to what is stable, and were warned of.
+    pub(super) cut: Vec<&'static str>,
     /// Iterations of the frame so far.
     pub(super) iterated: u32,
     /// Rows stepped in the frame so far, all substeps together.
@@ -125,7 +135,8 @@ impl World {
             stages: Vec::new(),
             events: Vec::new(),
             timings: Timings::default(),
-            measured: OnceLock::new(),
+            measured: Measured::default(),
+            cut: Vec::new(),
             corrections: Corrections::default(),
             changes: Changes::default(),
             velocities: Vec::new(),
@@ -196,7 +207,7 @@ impl World {
 
     /// Removes what is to go and decides how many substeps the frame takes.
     pub fn begin_frame(&mut self) -> Begun {
-        self.measured = OnceLock::new();
+        self.measured = Measured::default();
         let mut removed = 0;
         if self.clock.done == 0 {
             removed = self.remove();
@@ -252,7 +263,7 @@ impl World {
 
     /// Makes the list of a saved state again, and forgets what was measured before.
     pub fn restore_list(&mut self, list: &SavedList) {
-        self.measured = OnceLock::new();
+        self.measured = Measured::default();
         self.parts.neighbors.restore(&self.parts.particles, list, self.parts.parallelism);
         if let Some(sleep) = &mut self.parts.sleep {
             sleep.forget();
@@ -262,7 +273,7 @@ impl World {
 
     /// Rows were edited between two frames: speeds, ids and lists are found again.
     pub fn edited(&mut self, population: Population) {
-        self.measured = OnceLock::new();
+        self.measured = Measured::default();
         if population == Population::Changed {
             self.population_changed();
         }

@@ -116,7 +116,7 @@ class Observable:
 
     @property
     def pressures(self) -> Doubles:
-        """Pressures over density in the last substep [m^2/s^2], float64, shape (N,)."""
+        """Pressures over density [m^2/s^2], from the momentum of the last substep, float64, shape (N,)."""
         return self._native.pressures()
 
     @property

@@ -18,19 +18,22 @@ pub const COLUMN: Case = Case {
 
 fn column(trial: &Trial) -> Result<Measured, Failure> {
     let depth = f64::from(trial.resolution);
-    let mut run = Runner::new(&pool((16.0, depth), 16.0, &trial.solver))?;
+    let mut scene = pool((16.0, depth), 16.0, &trial.solver);
+    scene.tank[0].name = "tank".to_owned();
+    let mut run = Runner::new(&scene)?;
     // Sound has died down after 20 sqrt(H/g); the last half second is measured.
     let frames = (60.0 * 20.0 * (depth * SPACING / GRAVITY).sqrt()).ceil().clamp(120.0, 1200.0) as u32;
     run.frames(frames, |_| ())?;
-    let (mut worst, mut mean, mut height, mut square, mut slope) = (0.0f64, 0.0, 0.0, 0.0, 0.0);
+    let (mut worst, mut mean, mut height, mut square, mut slope, mut force) = (0.0f64, 0.0, 0.0, 0.0, 0.0, 0.0);
+    let mass = 1000.0 * SPACING * SPACING * run.solver.positions().len() as f64;
     run.frames(30, |solver| {
         let diagnostics = solver.diagnostics();
-        let mass = 1000.0 * SPACING * SPACING * diagnostics.particles() as f64;
         worst = worst.max(diagnostics.density_error_max);
         mean += diagnostics.density_error_mean / 30.0;
         height += 2.0 * diagnostics.potential_energy / (mass * GRAVITY) / 30.0;
         square += 2.0 * diagnostics.kinetic_energy / mass / 30.0;
         slope += pressure_slope(solver) / 30.0;
+        force += floor_force(solver) / 30.0;
     })?;
     let target = trial.solver.target_compression;
     let figures = vec![
@@ -38,27 +41,26 @@ fn column(trial: &Trial) -> Result<Measured, Failure> {
         Figure::new("C_max over the target", worst / target, Band::between(0.0, 1.3)),
         Figure::new("level error", height / (depth * SPACING) - 1.0, Band::within(0.012)),
         Figure::new("pressure slope error", slope / GRAVITY - 1.0, Band::within(0.02)),
+        Figure::new("error of the force on the floor", force / (mass * GRAVITY) - 1.0, Band::within(0.02)),
         Figure::new("v_rms [dx/s]", square.sqrt() / SPACING, Band::between(0.0, 0.8)),
     ];
     Ok((figures, run.cost))
 }
 
-/// Slope of the pressure over density with depth, by least squares away from surface and floor
-/// [m/s^2].
-pub fn pressure_slope(solver: &Solver) -> f64 {
-    let heights: Vec<f64> = points(solver).map(|x| x.y).collect();
-    let top = heights.iter().copied().fold(0.0, f64::max);
-    let edge = (3.0 * SPACING).min(0.2 * top);
-    let inside = heights.iter().zip(solver.pressures()).filter(|(y, _)| **y > edge && **y < top - edge);
-    let (mut n, mut sy, mut sp, mut syy, mut syp) = (0.0, 0.0, 0.0, 0.0, 0.0);
-    for (&y, p) in inside {
-        n += 1.0;
-        sy += y;
-        sp += p;
-        syy += y * y;
-        syp += y * p;
-    }
-    -(n * syp - sy * sp) / (n * syy - sy * sy)
+/// Force of the water down on the floor of the tank [N].
+pub(super) fn floor_force(solver: &Solver) -> f64 {
+    solver.wall_forces().iter().filter(|wall| wall.name.ends_with("bottom")).map(|wall| -wall.force.y).sum()
+}
+
+/// Slope of the pressure over density with the depth below the level, by least squares over all
+/// particles: near floor and surface they lie in rows, between which single ones would mislead [m/s^2].
+fn pressure_slope(solver: &Solver) -> f64 {
+    let level = 2.0 * points(solver).map(|x| x.y).sum::<f64>() / solver.positions().len() as f64;
+    let depths = points(solver).map(|x| level - x.y);
+    let (top, bottom) = depths
+        .zip(solver.pressures())
+        .fold((0.0, 0.0), |(top, bottom), (depth, p)| (top + depth * f64::from(*p), bottom + depth * depth));
+    top / bottom
 }
 
 /// The collapse of a column a x 2a.

@@ -1,7 +1,9 @@
 //! Stability: scenes that ask too much. Each must end finite, contained and with bounded speed, or
 //! stop with an error that says where.
 
+pub mod chart;
 mod fuzz;
+pub mod map;
 mod named;
 
 pub use fuzz::{Counts, fuzz, random_scene, summary};

@@ -5,6 +5,7 @@
 //! resist compression alone, gas dilation too. One relaxed Jacobi step per substep replaces the many
 //! iterations of a large step (Macklin et al. 2019).
 
+mod pressure;
 mod settings;
 mod solve;
 
@@ -158,6 +159,10 @@ impl ConstraintGroup for Density {
 
     fn measure_density(&self, now: Substep<'_>) -> Option<Vec<Real>> {
         Some(self.measure(now))
+    }
+
+    fn measure_pressure(&self, now: Substep<'_>) -> Option<Vec<Real>> {
+        Some(self.read_pressures(now))
     }
 
     fn density(&self) -> Option<DensityColumns<'_>> {

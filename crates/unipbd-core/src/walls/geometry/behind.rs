@@ -79,6 +79,32 @@ impl Walls {
             }
         }
     }
+
+    /// Visits what each wall near `x` adds to the gradient of the coverage there [1/m], and the way from
+    /// that wall to `x` [m].
+    pub(crate) fn pushes(&self, x: Vector, coverage: &Coverage, mut visit: impl FnMut(Vector, Vector)) {
+        let reach = coverage.radius();
+        for plane in &self.planes {
+            let distance = (x - plane.point).dot(plane.normal);
+            if distance < reach {
+                visit(plane.normal * coverage.behind(distance).1, plane.normal * distance);
+            }
+        }
+        for corner in &self.corners {
+            let a = (x - corner.point) * corner.outward;
+            if a.min_element() > -reach {
+                let (twice, way) = (coverage.quadrant(a.x, a.y).1 * corner.outward, a * corner.outward);
+                visit(Vector::new(-twice.x, 0.0), Vector::new(way.x, 0.0));
+                visit(Vector::new(0.0, -twice.y), Vector::new(0.0, way.y));
+            }
+        }
+        for rectangle in &self.rectangles {
+            let gradient = rectangle.coverage(x, coverage).1;
+            if gradient != Vector::ZERO {
+                visit(gradient, x - x.clamp(rectangle.min, rectangle.max));
+            }
+        }
+    }
 }
 
 impl Rectangle {
