@@ -6,20 +6,23 @@ use std::process::ExitCode;
 use unipbd_core::scene::{GradientPoint, KernelKind, SolverSettings, Substeps};
 use unipbd_validation::report::{Entry, TARGETS, sheet, with_section};
 use unipbd_validation::stress::map::MAPS;
-use unipbd_validation::stress::{Ending, NAMED, chart, fuzz, random_scene, summary};
-use unipbd_validation::{cases, sweep};
+use unipbd_validation::stress::{Ending, NAMED, chart, endure_random, fuzz, random_scene, shrink, summary};
+use unipbd_validation::{cases, precision, sweep};
 
 const HELP: &str =
-    "usage: unipbd-validation [--quick | --full | --sweep [--full] | --stress [--full] | --map | CASE [RESOLUTION] [SETTING=VALUE...]]
+    "usage: unipbd-validation [--quick | --full | --sweep [--full] | --stress [--full] | --map | --precision | CASE [RESOLUTION] [SETTING=VALUE...]]
   --quick   every case at its quick size (default)
   --full    every case at three resolutions and three targets; writes docs/accuracy.md
   --sweep   run time against error for four cases; writes docs/accuracy/*.csv and *.svg
-  --stress  scenes that ask too much, and 100 random ones (2000 with --full)
+  --stress  scenes that ask too much, and 100 random ones (2000 with --full); one that breaks is shrunk and kept
   --map     what is stable: density ratio, depth and speed against substeps; its part of docs/accuracy.md and
             docs/images/stability.svg (--full does it too)
+  --precision  f32 against f64 (built by cargo); its part of docs/accuracy.md (--full does it too)
   CASE      one case; settings are target, substeps, iterations, tolerance, kernel, kernel_radius, relaxation,
             gradients, constraint_mixing, artificial_pressure";
 
+/// Scenes that once broke.
+const REGRESSIONS: &str = "crates/unipbd-validation/regressions";
 /// The accuracy sheet.
 const SHEET: &str = "docs/accuracy.md";
 
@@ -33,6 +36,8 @@ fn main() -> ExitCode {
         Ok(run_stress(if has("--full") { 2000 } else { 100 }))
     } else if has("--map") {
         run_map()
+    } else if has("--precision") {
+        run_precision()
     } else if has("--sweep") {
         run_sweeps(has("--full"))
     } else if has("--full") {
@@ -144,7 +149,16 @@ fn run_full() -> Result<bool, Box<dyn std::error::Error>> {
         }
         std::fs::write(SHEET, sheet(&entries, &charts))?;
     }
+    run_precision()?;
     run_map()
+}
+
+/// Runs the same scenes in f32 and f64; writes the section of the sheet.
+fn run_precision() -> Result<bool, Box<dyn std::error::Error>> {
+    let body = precision::section(&precision::measure()?, &precision::measure_double()?);
+    println!("{body}");
+    write_section(precision::HEADING, &body)?;
+    Ok(true)
 }
 
 /// Surveys all maps; writes the picture and the section of the sheet.
@@ -183,6 +197,17 @@ fn run_sweeps(full: bool) -> Result<bool, Box<dyn std::error::Error>> {
     Ok(true)
 }
 
+/// Shrinks a scene that breaks and writes it where the tests find it.
+fn keep(seed: u64, what: &str) {
+    let small = shrink(&random_scene(seed), |scene| !endure_random(scene).is_good());
+    let path = Path::new(REGRESSIONS).join(format!("seed_{seed}.toml"));
+    let text = toml::to_string(&small).map_err(std::io::Error::other);
+    match text.and_then(|text| std::fs::write(&path, format!("# Seed {seed}: {what}\n{text}"))) {
+        Ok(()) => println!("    shrunk to {}: {}", path.display(), summary(&small)),
+        Err(error) => println!("    {}: {error}", path.display()),
+    }
+}
+
 fn run_stress(scenes: u64) -> bool {
     let mut good = true;
     for stress in NAMED {
@@ -192,7 +217,8 @@ fn run_stress(scenes: u64) -> bool {
     }
     let counts = fuzz(0..scenes, |seed, ending| {
         if let Ending::Broken(what) = ending {
-            println!("seed {seed}: {what}\n    {}", summary(&random_scene(seed).0));
+            println!("seed {seed}: {what}\n    {}", summary(&random_scene(seed)));
+            keep(seed, what);
         }
     });
     println!(
@@ -205,6 +231,6 @@ fn run_stress(scenes: u64) -> bool {
     counts
         .stopped
         .iter()
-        .for_each(|(seed, error)| println!("seed {seed} stopped: {error}\n    {}", summary(&random_scene(*seed).0)));
+        .for_each(|(seed, error)| println!("seed {seed} stopped: {error}\n    {}", summary(&random_scene(*seed))));
     good && counts.broken.is_empty()
 }

@@ -47,12 +47,19 @@ pub struct Counts {
     pub broken: Vec<(u64, String)>,
 }
 
+/// Frames that a random scene is watched.
+const FRAMES: u32 = 40;
+
+/// Runs a random scene, or one that was shrunk from it.
+pub fn endure_random(scene: &Scene) -> Ending {
+    endure(scene, FRAMES, accountable_speed(scene))
+}
+
 /// Runs the scenes of these seeds.
 pub fn fuzz(seeds: impl Iterator<Item = u64>, mut look: impl FnMut(u64, &Ending)) -> Counts {
     let mut counts = Counts::default();
     for seed in seeds {
-        let (scene, limit) = random_scene(seed);
-        let ending = endure(&scene, 40, limit);
+        let ending = endure_random(&random_scene(seed));
         look(seed, &ending);
         match ending {
             Ending::Sound { .. } => counts.sound += 1,
@@ -84,8 +91,8 @@ pub fn summary(scene: &Scene) -> String {
     )
 }
 
-/// A scene and the speed that can be accounted for [m/s].
-pub fn random_scene(seed: u64) -> (Scene, f64) {
+/// The scene of a seed.
+pub fn random_scene(seed: u64) -> Scene {
     let mut random = Random(seed);
     let spacing = 10f64.powf(random.range(-2.0, 0.0));
     let (width, height) = (f64::from(random.whole(8, 24)), f64::from(random.whole(8, 24)));
@@ -115,13 +122,21 @@ pub fn random_scene(seed: u64) -> (Scene, f64) {
         let face = [0.5 * width * spacing, 0.7 * height * spacing];
         scene.emitter.push(nozzle(&material, face, 3.0 * spacing, 0.3 * frame));
     }
-    let fall = (2.0 * 9.81 * height * spacing).sqrt();
+    scene
+}
+
+/// The speed that a scene can account for [m/s].
+pub fn accountable_speed(scene: &Scene) -> f64 {
+    let frame = scene.spacing * scene.fps;
+    let height = scene.tank.iter().map(|tank| tank.max[1] - tank.min[1]).fold(0.0, f64::max);
+    let speed = scene.block.iter().map(|block| block.velocity[0].hypot(block.velocity[1])).fold(0.0, f64::max);
+    let fall = (2.0 * 9.81 * height).sqrt();
     // Hot gas rises, light liquid under heavy squirts, a start that overlaps a little flies apart. What is
     // caught between a heavy liquid and a wall leaves as fast as Bernoulli lets it: sqrt(2 p/rho).
     let densities = || scene.materials().map(|material| material.density()).filter(|density| *density > 0.0);
     let ratio = densities().fold(0.0, f64::max) / densities().fold(f64::INFINITY, f64::min);
-    let squirt = 2.0 * ratio.sqrt() * speed;
-    (scene, 6.0 * fall + 3.0 * speed + 6.0 * frame + squirt)
+    let squirt = if ratio.is_finite() { 2.0 * ratio.sqrt() * speed } else { 0.0 };
+    6.0 * fall + 3.0 * speed + 6.0 * frame + squirt
 }
 
 fn solver(random: &mut Random) -> SolverSettings {

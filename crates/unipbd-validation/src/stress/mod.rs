@@ -5,9 +5,11 @@ pub mod chart;
 mod fuzz;
 pub mod map;
 mod named;
+mod shrink;
 
-pub use fuzz::{Counts, fuzz, random_scene, summary};
+pub use fuzz::{Counts, accountable_speed, endure_random, fuzz, random_scene, summary};
 pub use named::{NAMED, Stress};
+pub use shrink::shrink;
 
 use unipbd_core::scene::Scene;
 use unipbd_core::{BuildOptions, Solver, SolverError};
