@@ -18,6 +18,7 @@ pub const ALL: &[Case] = &[
     wave::STANDING_WAVE,
     pool::DAM_BREAK,
     flow::TAYLOR_GREEN,
+    flow::TAYLOR_GREEN_WIDE,
     flow::TAYLOR_GREEN_1000,
     layers::RAYLEIGH_TAYLOR,
     flow::COUETTE,
