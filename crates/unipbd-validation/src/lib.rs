@@ -5,6 +5,7 @@ pub mod case;
 pub mod cases;
 pub mod chart;
 pub mod exact;
+mod notes;
 pub mod precision;
 pub mod report;
 pub mod runner;

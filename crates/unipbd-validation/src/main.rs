@@ -4,7 +4,7 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use unipbd_core::scene::{GradientPoint, KernelKind, SolverSettings, Substeps};
-use unipbd_validation::report::{Entry, TARGETS, sheet, with_section};
+use unipbd_validation::report::{Entry, TARGETS, sheet, with_notes, with_section};
 use unipbd_validation::stress::map::MAPS;
 use unipbd_validation::stress::{Ending, NAMED, chart, endure_random, fuzz, random_scene, shrink, summary};
 use unipbd_validation::{cases, precision, sweep};
@@ -181,9 +181,9 @@ fn run_map() -> Result<bool, Box<dyn std::error::Error>> {
     Ok(true)
 }
 
-/// Puts a section into the sheet; the rest of it stays.
+/// Puts a section into the sheet, and the notes as they are now; the rest of it stays.
 fn write_section(heading: &str, body: &str) -> std::io::Result<()> {
-    let document = std::fs::read_to_string(SHEET)?;
+    let document = with_notes(&std::fs::read_to_string(SHEET)?);
     std::fs::write(SHEET, with_section(&document, heading, body))
 }
 

@@ -31,21 +31,10 @@ enum Scan {
 
 /// All curves.
 pub const VARIANTS: &[Variant] = &[
-    Variant { name: "Wendland, h = 2.5 dx (default)", change: |_| (), scan: Scan::Substeps(1) },
+    Variant { name: "Wendland, h = 3 dx (default)", change: |_| (), scan: Scan::Substeps(1) },
     Variant { name: "Wendland, h = 2 dx", change: |s| s.kernel_radius = 2.0, scan: Scan::Substeps(1) },
-    Variant {
-        name: "Wendland, h = 3 dx, omega 0.4",
-        change: |s| (s.kernel_radius, s.relaxation) = (3.0, Some(0.4)),
-        scan: Scan::Substeps(1),
-    },
-    Variant {
-        name: "h = 3 dx, omega 0.4, half way",
-        change: |s| {
-            (s.kernel_radius, s.relaxation) = (3.0, Some(0.4));
-            s.gradients = Some(GradientPoint::Middle);
-        },
-        scan: Scan::Substeps(1),
-    },
+    Variant { name: "Wendland, h = 2.5 dx", change: |s| s.kernel_radius = 2.5, scan: Scan::Substeps(1) },
+    Variant { name: "Wendland, h = 4 dx", change: |s| s.kernel_radius = 4.0, scan: Scan::Substeps(1) },
     Variant { name: "taken half way", change: |s| s.gradients = Some(GradientPoint::Middle), scan: Scan::Substeps(1) },
     Variant {
         name: "gradients at the start",
