@@ -92,6 +92,7 @@ fn line(svg: &mut String, from: (f64, f64), to: (f64, f64), color: &str) {
 }
 
 fn text(svg: &mut String, at: (f64, f64), anchor: &str, text: &str) {
+    let text = text.replace('&', "&amp;").replace('<', "&lt;");
     let _ = writeln!(svg, "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"{anchor}\">{text}</text>", at.0, at.1);
 }
 
@@ -121,5 +122,12 @@ mod tests {
         assert_eq!(best(&curves[0]), [true, true]);
         assert_eq!(best(&curves[1]), [false, true, false]);
         assert!(log_log("t", "x", "y", &curves).contains("<polyline"));
+    }
+
+    #[test]
+    fn names_are_written_so_that_a_picture_is_well_formed() {
+        let curves = [Curve { name: "Macklin & Müller <2013>".into(), points: Vec::new() }];
+        let svg = log_log("t", "x", "y", &curves);
+        assert!(svg.contains(">Macklin &amp; Müller &lt;2013></text>"), "{svg}");
     }
 }
