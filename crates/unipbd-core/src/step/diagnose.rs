@@ -189,7 +189,14 @@ impl World {
         (0..particles.len()).map(|row| particles.multiplier[row] * particles.inverse_mass[row] * scale).collect()
     }
 
+    /// The largest lambda/(m dt^2): cheap enough for every frame.
     fn pressure_max(&self) -> f64 {
-        self.pressures().iter().map(|pressure| f64::from(*pressure)).fold(0.0, f64::max)
+        if self.clock.dt == 0.0 {
+            return 0.0;
+        }
+        let particles = &self.parts.particles;
+        let pressure = |row: usize| particles.multiplier[row] * particles.inverse_mass[row];
+        let largest = self.parts.parallelism.max(particles.dense(), pressure);
+        self.parts.pressure_scale * f64::from(largest.max(0.0)) / (self.clock.dt * self.clock.dt)
     }
 }
