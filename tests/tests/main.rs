@@ -9,4 +9,5 @@ mod liquids;
 mod plume;
 mod smoke;
 mod stages;
+mod tunnelling;
 mod walls;

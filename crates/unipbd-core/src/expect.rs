@@ -140,7 +140,7 @@ fn depth_in_walls(solver: &Solver) -> f64 {
     let walls = solver.walls();
     let particles = solver.particles();
     let free = |row: &usize| particles.inverse_masses()[*row] > 0.0 || particles.phases()[*row].is_passive();
-    let depth = |x| f64::from((walls.clamp(x) - x).length());
+    let depth = |x| f64::from((walls.clamp(x, x) - x).length());
     let loose = (0..particles.len()).filter(free).map(|row| depth(particles.positions()[row]));
     loose.chain(dynamic(solver).map(|body| depth(vector(body.position)))).fold(0.0, f64::max)
 }

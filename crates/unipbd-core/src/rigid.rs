@@ -1,14 +1,14 @@
 //! Rigid bodies among the particles: their lattice samples as rows, loads from the fluid, and a
 //! fluid that stays outside.
 
+mod expel;
+
 use crate::bodies::{Bodies, Body};
 use crate::constraints::contact::Contacts;
 use crate::math::{Real, Vector, Vector64, vector, wide};
-use crate::neighbors::Neighbors;
 use crate::particles::Particles;
-use crate::phase::Phase;
 use crate::rows::RowIndex;
-use crate::walls::Walls;
+use expel::Trespasser;
 
 /// The bodies of a run, their contacts, and the ids of their samples.
 #[derive(Clone, serde::Serialize, serde::Deserialize)]
@@ -31,13 +31,6 @@ struct Tied {
     body: u32,
     /// Where it is on the body [m].
     place: Vector64,
-}
-
-/// A fluid particle that may be inside a body.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
-struct Trespasser {
-    row: u32,
-    body: u32,
 }
 
 impl RigidBodies {
@@ -149,67 +142,6 @@ impl RigidBodies {
         }
     }
 
-    /// Moves fluid particles out of bodies along the nearest face; particle and body share the momentum.
-    pub(crate) fn expel(
-        &mut self,
-        particles: &mut Particles,
-        neighbors: &Neighbors,
-        walls: &Walls,
-        rows: &RowIndex,
-        dt: f64,
-    ) {
-        self.find_trespassers(particles, neighbors, rows);
-        for &Trespasser { row, body } in &self.trespassers {
-            let (row, pose) = (row as usize, self.bodies.predicted_pose(body));
-            let arm = wide(particles.position[row]) - pose.position;
-            let turned = Vector64::from_angle(-pose.angle).rotate(arm);
-            let nearest = nearest(&self.bodies.views()[body as usize], turned);
-            if nearest.distance >= 0.0 {
-                continue;
-            }
-            let normal = Vector64::from_angle(pose.angle).rotate(nearest.normal);
-            let depth = -nearest.distance;
-            // Only what the two have come nearer in this substep becomes velocity.
-            let moved = wide(particles.displacement[row]) - self.bodies.displacement_at(body, arm);
-            let approach = (-moved.dot(normal)).clamp(0.0, depth);
-            let response = self.bodies.response(body);
-            let lever = arm.perp_dot(normal);
-            let own = f64::from(particles.inverse_mass[row]);
-            let impulse = approach / (own + response.linear + response.angular * lever * lever);
-            particles.displacement[row] += vector(normal * (impulse * own));
-            let force = -normal * impulse / (dt * dt);
-            self.bodies.load(body, force, arm.perp_dot(force), dt);
-            let rest = vector(normal * (depth - approach));
-            let place = particles.start[row] + rest + (particles.displacement[row] + particles.remainder[row]);
-            let kept = walls.clamp(place);
-            particles.start[row] += rest + (kept - place);
-            particles.position[row] = kept;
-        }
-    }
-
-    fn find_trespassers(&mut self, particles: &Particles, neighbors: &Neighbors, rows: &RowIndex) {
-        let mut found = std::mem::take(&mut self.trespassers);
-        found.clear();
-        let periodic = neighbors.periodic();
-        self.each_sample(rows, |body, _, sample| {
-            if sample >= particles.awake() {
-                return;
-            }
-            let x = particles.position[sample];
-            neighbors.for_each(sample, |row| {
-                let apart = periodic.min_image(particles.position[row] - x);
-                let movable = particles.phase[row] != Phase::Rigid && particles.inverse_mass[row] > 0.0;
-                let movable = movable && row < particles.awake();
-                if movable && apart.length_squared() < self.near * self.near {
-                    found.push(Trespasser { row: row as u32, body });
-                }
-            });
-        });
-        found.sort_unstable();
-        found.dedup();
-        self.trespassers = found;
-    }
-
     /// Visits the samples whose rows are known: body, place in the body, row.
     fn each_sample(&self, rows: &RowIndex, mut visit: impl FnMut(u32, Vector64, usize)) {
         for (body, view) in self.bodies.views().iter().enumerate() {
@@ -286,14 +218,5 @@ impl RigidBodies {
     pub(crate) fn finish_frame(&mut self, frame_time: f64) {
         self.contacts.finish_frame(&mut self.bodies, frame_time);
         self.bodies.finish_frame(frame_time);
-    }
-}
-
-/// The nearest point of a body's outline, in body coordinates.
-fn nearest(body: &Body, point: Vector64) -> crate::shapes::Nearest {
-    if body.radius > 0.0 {
-        crate::shapes::Shape::Disc { radius: body.radius }.nearest(point)
-    } else {
-        crate::shapes::nearest_on_polygon(&body.outline, point)
     }
 }

@@ -66,7 +66,7 @@ impl SmokeAdvection {
     fn moved(&self, now: Substep<'_>, position: Vector, velocity: Vector, before: Vector) -> Vector {
         let ratio = if self.last_dt > 0.0 { 0.5 * now.dt / self.last_dt } else { 0.0 };
         let moved = position + (velocity + (velocity - before) * ratio) * now.dt;
-        now.neighbors.periodic().wrap(now.walls.clamp(moved))
+        now.neighbors.periodic().wrap(now.walls.clamp(position, moved))
     }
 }
 

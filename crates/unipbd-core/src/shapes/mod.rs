@@ -10,7 +10,7 @@ mod wall;
 pub use core_pieces::{ConvexPiece, Core};
 pub use decompose::convex_decomposition;
 pub use polygon::Moments;
-pub(crate) use polygon::nearest as nearest_on_polygon;
+pub(crate) use polygon::{first_crossing, nearest as nearest_on_polygon};
 pub use sampling::Samples;
 pub use wall::{Boundary, Wall};
 

@@ -72,6 +72,27 @@ pub(crate) fn nearest(corners: &[Vector64], point: Vector64) -> Nearest {
     Nearest { distance: side * distance, normal }
 }
 
+/// The first edge by which a path enters, and how deep behind its line the path ends.
+pub(crate) fn first_crossing(corners: &[Vector64], from: Vector64, to: Vector64) -> Option<Nearest> {
+    let outwards = if doubled_area(corners) > 0.0 { -1.0 } else { 1.0 };
+    let way = to - from;
+    let mut first: Option<(f64, Nearest)> = None;
+    for (p, q) in edges(corners) {
+        let normal = (q - p).perp().normalize_or_zero() * outwards;
+        let (height, towards) = ((from - p).dot(normal), way.dot(normal));
+        // What starts on an edge, but for rounding, starts outside.
+        if towards >= 0.0 || height < -1e-6 * (q - p).length() || height + towards >= 0.0 {
+            continue;
+        }
+        let t = height.max(0.0) / -towards;
+        let along = (from + way * t - p).dot(q - p) / (q - p).length_squared();
+        if (0.0..=1.0).contains(&along) && first.is_none_or(|(least, _)| t < least) {
+            first = Some((t, Nearest { distance: height + towards, normal }));
+        }
+    }
+    first.map(|(_, way)| way)
+}
+
 /// Counter-clockwise, without repeated corners and corners on a straight line.
 pub(super) fn tidied(corners: &[Vector64]) -> Vec<Vector64> {
     let mut corners = corners.to_vec();

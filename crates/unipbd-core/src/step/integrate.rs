@@ -100,6 +100,9 @@ pub(super) fn apply(particles: &mut Particles, corrections: &Corrections, walls:
     let (steps, bands) = (corrections.displacements(), particles.bands());
     let (phase, start) = (&particles.phase, &particles.start);
     let (inverse_mass, remainder) = (&particles.inverse_mass, &particles.remainder);
+    // What goes farther than a box is thick may have passed it.
+    let thinnest = walls.thinnest() * walls.thinnest();
+    let boxes = thinnest.is_finite();
     for rows in bands {
         let band = rows.start;
         let (displacement, position) = (&mut particles.displacement[rows.clone()], &mut particles.position[rows]);
@@ -118,8 +121,9 @@ pub(super) fn apply(particles: &mut Particles, corrections: &Corrections, walls:
             let mut distances = [0.0; CHUNK_ROWS];
             walls.distances(position, &mut distances[..position.len()]);
             for k in 0..position.len() {
-                if distances[k] < 0.0 && inverse_mass[k] > 0.0 && moving.phase[k] != Phase::Smoke {
-                    meet_walls(&mut displacement[k], position[k], walls, |_, _| {});
+                let meets = distances[k] < 0.0 || (boxes && displacement[k].length_squared() >= thinnest);
+                if meets && inverse_mass[k] > 0.0 && moving.phase[k] != Phase::Smoke {
+                    meet_walls(&mut displacement[k], (moving.start[k], position[k]), walls, |_, _| {});
                     position[k] = moving.place(k, displacement[k]);
                 }
             }
@@ -136,7 +140,7 @@ pub(super) fn load_walls(particles: &Particles, corrections: &mut Corrections, w
         }
         let mut displacement = particles.displacement[row] + corrections.displacements()[row];
         let place = particles.start[row] + (displacement + particles.remainder[row]);
-        meet_walls(&mut displacement, place, walls, |hit, push| {
+        meet_walls(&mut displacement, (particles.start[row], place), walls, |hit, push| {
             if let Some(wall) = hit.measured {
                 corrections.wall_loads_mut()[usize::from(wall)] -= wide(push) / f64::from(inverse_mass);
             }
@@ -144,11 +148,16 @@ pub(super) fn load_walls(particles: &Particles, corrections: &mut Corrections, w
     }
 }
 
-/// Turns a displacement that ends at `place` out of all walls, and tells what each of them pushes.
+/// Turns a displacement that leads from `start` to `place` out of all walls, and tells what each of them pushes.
 #[inline]
-fn meet_walls(displacement: &mut Vector, place: Vector, walls: &Walls, mut feel: impl FnMut(&Hit, Vector)) {
-    let mut touches = false;
-    for hit in walls.hits(place) {
+fn meet_walls(
+    displacement: &mut Vector,
+    (start, place): (Vector, Vector),
+    walls: &Walls,
+    mut feel: impl FnMut(&Hit, Vector),
+) {
+    let (mut touches, before) = (false, *displacement);
+    for hit in walls.hits(start, place) {
         let push = hit.normal * hit.depth;
         *displacement += push;
         feel(&hit, push);
@@ -156,10 +165,17 @@ fn meet_walls(displacement: &mut Vector, place: Vector, walls: &Walls, mut feel:
     }
     // Friction comes after all walls: in a corner one wall must not undo the way that the other pushes back.
     if touches {
-        for hit in walls.hits(place) {
+        for hit in walls.hits(start, place) {
             let held = held_back(*displacement, &hit);
             *displacement -= held;
             feel(&hit, -held);
+        }
+        if walls.are_crowded() {
+            let place = place + (*displacement - before);
+            walls.turn_out_again(start, place, |hit, push| {
+                *displacement += push;
+                feel(hit, push);
+            });
         }
     }
 }

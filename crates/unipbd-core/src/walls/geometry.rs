@@ -67,6 +67,7 @@ pub struct Walls {
     outlines: Vec<WallOutline>,
     /// Names of the walls whose forces are measured.
     measured: Vec<String>,
+    crowded: bool,
 }
 
 impl Walls {
@@ -76,6 +77,7 @@ impl Walls {
         scene.half_plane.iter().for_each(|wall| walls.add_half_plane(wall));
         scene.tank.iter().for_each(|tank| walls.add_tank(tank));
         scene.obstacle.iter().for_each(|obstacle| walls.add_obstacle(obstacle));
+        walls.note_crowding();
         walls
     }
 
@@ -101,10 +103,11 @@ impl Walls {
         &self.outlines
     }
 
-    /// The walls that hold the point `x` inside them, planes first.
-    pub fn hits(&self, x: Vector) -> impl Iterator<Item = Hit> + '_ {
+    /// The walls that hold the end `x` of a path from `start` inside them, planes first, and the boxes that
+    /// the path passes through.
+    pub fn hits(&self, start: Vector, x: Vector) -> impl Iterator<Item = Hit> + '_ {
         let planes = self.planes.iter().filter_map(move |plane| plane.hit(x));
-        planes.chain(self.rectangles.iter().filter_map(move |rectangle| rectangle.hit(x)))
+        planes.chain(self.rectangles.iter().filter_map(move |rectangle| rectangle.hit_on_path(start, x)))
     }
 
     /// Square of the largest speed of a wall along itself [m^2/s^2].
@@ -139,19 +142,57 @@ impl Walls {
         planes.chain(rectangles)
     }
 
-    /// Moves a point out of all walls.
-    pub fn clamp(&self, mut x: Vector) -> Vector {
+    /// Moves the end `x` of a path from `start` out of all walls; where there is no path, both are the same.
+    pub fn clamp(&self, start: Vector, mut x: Vector) -> Vector {
         for plane in &self.planes {
             if let Some(hit) = plane.hit(x) {
                 x += hit.normal * hit.depth;
             }
         }
         for rectangle in &self.rectangles {
-            if let Some(hit) = rectangle.hit(x) {
+            if let Some(hit) = rectangle.hit_on_path(start, x) {
                 x += hit.normal * hit.depth;
             }
         }
+        if self.crowded {
+            self.turn_out_again(start, x, |_, push| x += push);
+        }
         x
+    }
+
+    /// Least extent of a box [m]: what goes less far in a substep passes none. Infinite without boxes.
+    pub(crate) fn thinnest(&self) -> Real {
+        let extents = self.rectangles.iter().map(|rectangle| (rectangle.max - rectangle.min).min_element());
+        extents.fold(Real::INFINITY, Real::min)
+    }
+
+    /// Whether what is turned out of one wall may come into another: at corners that are not square, and at boxes.
+    pub(crate) fn are_crowded(&self) -> bool {
+        self.crowded
+    }
+
+    /// Tells the pushes that turn a path from `start` to `x` out of the walls into which it was turned out of others.
+    /// Where two walls meet at a sharp angle the path goes on along the first to where they meet.
+    #[cold]
+    pub(crate) fn turn_out_again(&self, start: Vector, mut x: Vector, mut feel: impl FnMut(&Hit, Vector)) {
+        let mut last = Vector::ZERO;
+        for _ in 0..4 {
+            let deepest = self.hits(start, x).max_by(|a, b| a.depth.total_cmp(&b.depth));
+            let Some(hit) = deepest else { return };
+            let facing = hit.normal.dot(last).min(0.0);
+            let apart = 1.0 - facing * facing;
+            let along = if apart > 1e-3 { (hit.normal - last * facing) / apart } else { hit.normal };
+            let push = along * hit.depth;
+            x += push;
+            feel(&hit, push);
+            last = hit.normal;
+        }
+    }
+
+    fn note_crowding(&mut self) {
+        let skew = |a: &Plane, b: &Plane| (-0.999..-0.001).contains(&a.normal.dot(b.normal));
+        let planes = || self.planes.iter();
+        self.crowded = !self.rectangles.is_empty() || planes().any(|a| planes().any(|b| skew(a, b)));
     }
 
     fn add_half_plane(&mut self, wall: &HalfPlane) {
@@ -233,6 +274,7 @@ impl Plane {
 }
 
 impl Rectangle {
+    /// The nearest side, for a point inside.
     fn hit(&self, x: Vector) -> Option<Hit> {
         let (low, high) = (x - self.min, self.max - x);
         if low.cmple(Vector::ZERO).any() || high.cmple(Vector::ZERO).any() {
@@ -241,6 +283,50 @@ impl Rectangle {
         let sides = [(low.x, -Vector::X), (high.x, Vector::X), (low.y, -Vector::Y), (high.y, Vector::Y)];
         let (depth, normal) = sides.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
         Some(Hit { normal, depth, friction: self.friction, measured: self.measured })
+    }
+
+    /// The way out for a path that ends inside or beyond: the side nearest to its end if it can have come in
+    /// there, else the one by which it entered.
+    fn hit_on_path(&self, start: Vector, x: Vector) -> Option<Hit> {
+        if start.max(x).cmple(self.min).any() || start.min(x).cmpge(self.max).any() {
+            return None;
+        }
+        let nearest = self.hit(x);
+        let slack = 1e-3 * (self.max - self.min).min_element();
+        let open = |hit: &Hit| (start - x).dot(hit.normal) >= hit.depth - slack;
+        nearest.filter(open).or_else(|| self.entry(start, x)).or(nearest)
+    }
+
+    /// By slabs: the path is inside from the last of the sides it enters to the first it leaves. What
+    /// starts inside (on a side, but for rounding) counts as starting on the side nearest to it.
+    fn entry(&self, start: Vector, x: Vector) -> Option<Hit> {
+        let mut from = start;
+        if let Some(inside) = self.hit(start) {
+            from = Vector::select(inside.normal.cmpgt(Vector::ZERO), self.max, from);
+            from = Vector::select(inside.normal.cmplt(Vector::ZERO), self.min, from);
+        }
+        let way = x - from;
+        let (mut enter, mut leave, mut side) = (-1.0, 1.0, None);
+        for axis in [Vector::X, Vector::Y] {
+            let (at, step) = (from.dot(axis), way.dot(axis));
+            let (low, high) = (self.min.dot(axis), self.max.dot(axis));
+            if step == 0.0 {
+                if at <= low || at >= high {
+                    return None;
+                }
+                continue;
+            }
+            let (near, far) = if step > 0.0 { (low, high) } else { (high, low) };
+            let (comes, goes) = ((near - at) / step, (far - at) / step);
+            if comes > enter {
+                let normal = if step > 0.0 { -axis } else { axis };
+                (enter, side) = (comes, Some((normal, (near - x.dot(axis)).abs())));
+            }
+            leave = goes.min(leave);
+        }
+        let (normal, depth) = side?;
+        let meets = enter >= 0.0 && enter < leave;
+        meets.then_some(Hit { normal, depth, friction: self.friction, measured: self.measured })
     }
 }
 
@@ -286,8 +372,9 @@ mod tests {
     #[test]
     fn open_side_lets_particles_through() {
         let walls = tank(vec![Side::Top]);
-        assert_eq!(walls.clamp(Vector::new(5.0, 20.0)), Vector::new(5.0, 20.0));
-        assert_eq!(walls.clamp(Vector::new(-1.0, -2.0)), Vector::ZERO);
+        let clamp = |x: Vector| walls.clamp(x, x);
+        assert_eq!(clamp(Vector::new(5.0, 20.0)), Vector::new(5.0, 20.0));
+        assert_eq!(clamp(Vector::new(-1.0, -2.0)), Vector::ZERO);
         assert_eq!(walls.outlines().len(), 1);
         assert_eq!(walls.outlines()[0].points.len(), 4);
     }
@@ -296,6 +383,11 @@ mod tests {
     fn shortest_way_leads_out_of_an_obstacle() {
         let obstacle = Obstacle::new([1.0, 1.0], [2.0, 4.0]);
         let walls = Walls::new(&Scene { obstacle: vec![obstacle], ..Scene::default() });
-        assert_eq!(walls.clamp(Vector::new(1.1, 2.0)), Vector::new(1.0, 2.0));
+        let inside = Vector::new(1.1, 2.0);
+        assert_eq!(walls.clamp(inside, inside), Vector::new(1.0, 2.0));
+        for beyond in [1.9, 2.0, 7.0] {
+            let thrown = walls.clamp(Vector::new(0.9, 2.0), Vector::new(beyond, 2.5));
+            assert_eq!(thrown, Vector::new(1.0, 2.5), "out by the side it came in");
+        }
     }
 }
