@@ -6,6 +6,7 @@ mod determinism;
 mod emitters;
 mod filled_gas;
 mod liquids;
+mod obstacles;
 mod plume;
 mod smoke;
 mod stages;

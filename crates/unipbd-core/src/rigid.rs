@@ -10,6 +10,9 @@ use crate::particles::Particles;
 use crate::rows::RowIndex;
 use expel::Trespasser;
 
+/// A little more than half the diagonal of a lattice cell [spacings].
+const LEAST_NEAR: f64 = 0.75;
+
 /// The bodies of a run, their contacts, and the ids of their samples.
 #[derive(Clone, serde::Serialize, serde::Deserialize)]
 pub struct RigidBodies {
@@ -17,8 +20,10 @@ pub struct RigidBodies {
     pub(crate) contacts: Contacts,
     /// Id of the first sample of each body, and one past the last of all.
     first_sample: Vec<u32>,
-    /// Distance from a sample within which a particle may be inside the body [m].
-    near: Real,
+    /// Distance from a sample within which a particle may be inside the body, by body [m].
+    near: Vec<Real>,
+    /// Path in a substep, of a particle or a body, from which on the way counts and not the place alone [m].
+    far: Real,
     trespassers: Vec<Trespasser>,
     /// Ends of ropes that move with bodies.
     tied: Vec<Tied>,
@@ -39,15 +44,20 @@ impl RigidBodies {
     pub(crate) fn new(bodies: Bodies, contacts: Contacts, first_sample: Option<u32>, spacing: f64) -> Self {
         let mut next = first_sample.unwrap_or(0);
         let mut first = vec![next];
+        let mut near = Vec::new();
         for body in bodies.views() {
-            next += if first_sample.is_some() { body.samples.len() as u32 } else { 0 };
+            let seen = first_sample.is_some();
+            next += if seen { body.samples.len() as u32 } else { 0 };
             first.push(next);
+            let gap = if seen { expel::widest_gap(body, spacing) } else { 0.0 };
+            near.push(gap.max(LEAST_NEAR * spacing) as Real);
         }
         RigidBodies {
             bodies,
             contacts,
             first_sample: first,
-            near: (0.75 * spacing) as Real,
+            near,
+            far: (0.5 * spacing) as Real,
             trespassers: Vec::new(),
             tied: Vec::new(),
         }

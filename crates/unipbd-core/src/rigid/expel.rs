@@ -3,9 +3,11 @@
 //! What moves little in a substep is pushed out along the nearest face. What moves far could be past the
 //! middle of a thin body, or past the body: there the face counts that its path came in by.
 
+use std::collections::BTreeMap;
+
 use super::RigidBodies;
 use crate::bodies::{Body, Response};
-use crate::math::{Real, Vector, Vector64, vector, wide};
+use crate::math::{Vector, Vector64, vector, wide};
 use crate::neighbors::Neighbors;
 use crate::particles::Particles;
 use crate::phase::Phase;
@@ -13,9 +15,6 @@ use crate::rows::RowIndex;
 use crate::shapes::{Nearest, Shape, first_crossing, nearest_on_polygon};
 use crate::walls::Walls;
 
-/// Path in a substep, of a particle or a body, from which on the way counts and not the place alone
-/// [over `near`]: half a spacing.
-const FAR: Real = 2.0 / 3.0;
 /// How often a path that was turned out of one body is tried against the others: corners need two. In the
 /// second half of them only against those that cannot give way.
 const TURNS: usize = 4;
@@ -97,7 +96,7 @@ impl RigidBodies {
         from -= before.normal * before.distance.min(0.0);
         let mut way = nearest(view, to);
         // The nearest face is the way out if the path can have come in there.
-        let slack = 1e-3 * f64::from(self.near);
+        let slack = 1e-3 * f64::from(self.far);
         if way.distance >= 0.0 || (from - to).dot(way.normal) < -way.distance - slack {
             way = crossing(view, from, to).unwrap_or(way);
         }
@@ -168,11 +167,11 @@ impl RigidBodies {
             if sample >= particles.awake() {
                 return;
             }
-            let fixed = self.is_fixed(body);
+            let (fixed, near) = (self.is_fixed(body), self.near[body as usize]);
             let x = particles.position[sample];
             neighbors.for_each(sample, |row| {
                 let apart = periodic.min_image(particles.position[row] - x);
-                if is_movable(particles, row) && apart.length_squared() < self.near * self.near {
+                if is_movable(particles, row) && apart.length_squared() < near * near {
                     found.push(Trespasser { row: row as u32, fixed, body });
                 }
             });
@@ -184,7 +183,7 @@ impl RigidBodies {
 
     /// Rows that went far in this substep, and those in the way of a body that did.
     fn find_fast(&self, particles: &Particles) -> Vec<u32> {
-        let far = FAR * self.near;
+        let far = self.far;
         let mut found: Vec<u32> = (0..particles.awake())
             .filter(|&row| particles.displacement[row].length_squared() > far * far && is_movable(particles, row))
             .map(|row| row as u32)
@@ -218,6 +217,28 @@ enum End {
 /// Whether a dense row is a particle that bodies can push.
 fn is_movable(particles: &Particles, row: usize) -> bool {
     particles.phase[row] != Phase::Rigid && particles.inverse_mass[row] > 0.0 && row < particles.awake()
+}
+
+/// How far from its nearest sample a point of a body can be, where that is on its outline [m]. Thin parts
+/// that do not fit the lattice have few samples.
+pub(super) fn widest_gap(body: &Body, spacing: f64) -> f64 {
+    let cell = |x: Vector64| ((x.x / spacing).floor() as i64, (x.y / spacing).floor() as i64);
+    let mut cells = BTreeMap::<(i64, i64), Vec<Vector64>>::new();
+    body.samples.iter().for_each(|&sample| cells.entry(cell(sample)).or_default().push(sample));
+    let gap = |x: Vector64| {
+        let (column, row) = cell(x);
+        let near = (-2..=2).flat_map(|i| (-2..=2).map(move |j| (column + i, row + j)));
+        let samples = near.filter_map(|place| cells.get(&place)).flatten();
+        samples.map(|sample| (*sample - x).length()).fold(2.0 * spacing, f64::min)
+    };
+    let corners = body.outline.len();
+    let mut widest = 0.0f64;
+    for k in 0..corners {
+        let (from, to) = (body.outline[k], body.outline[(k + 1) % corners]);
+        let steps = (4.0 * (to - from).length() / spacing).ceil().max(1.0);
+        (0..steps as u64).for_each(|step| widest = widest.max(gap(from.lerp(to, step as f64 / steps))));
+    }
+    widest
 }
 
 /// The nearest point of a body's outline, in body coordinates.

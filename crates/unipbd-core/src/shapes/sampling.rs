@@ -24,7 +24,8 @@ pub(super) fn fill(shape: &Shape, spacing: f64) -> Samples {
     for row in 0..counts.y as usize {
         for column in 0..counts.x as usize {
             let point = start + cell * Vector64::new(column as f64, row as f64);
-            if shape.contains(point) {
+            // On the outline itself rounding would decide, and differently on two sides.
+            if shape.contains(point) && shape.nearest(point).distance < -1e-6 * spacing {
                 points.push(point);
             }
         }

@@ -1,0 +1,114 @@
+//! An obstacle of any outline is a body of `kind = "static"`: liquids, gas and bodies stay outside of it, also in
+//! its hollows, and the forces of all of them on it can be read.
+
+use unipbd_core::bodies::Body;
+use unipbd_core::math::wide;
+use unipbd_core::{Phase, Solver, Vector64};
+use unipbd_tests::{bars, build, run, scene};
+
+/// A trough with slanted sides, more than a thousand litres of water in it, and a heavy box on its floor.
+const TROUGH: &str = r#"
+spacing = 0.05
+[solver]
+substeps = 8
+[[liquid]]
+name = "water"
+viscosity = 0.05
+[[block]]
+material = "water"
+min = [-0.5, 0.0]
+max = [0.5, 1.2]
+[[body]]
+name = "trough"
+kind = "static"
+position = [0.0, 0.0]
+outline = [[-1.2, 1.6], [-1.4, 1.5], [-0.7, -0.2], [0.7, -0.2], [1.4, 1.5], [1.2, 1.6], [0.5, 0.0], [-0.5, 0.0]]
+[[body]]
+name = "stone"
+size = [0.3, 0.3]
+position = [0.0, 0.15]
+density = 2500.0
+"#;
+
+/// Depth of the deepest fluid particle inside a body [m].
+fn deepest(solver: &Solver, body: &Body) -> f64 {
+    let shape = unipbd_core::shapes::Shape::Polygon(body.outline.clone());
+    let fluid = solver.positions().iter().zip(solver.phases()).filter(|(_, phase)| phase.is_fluid());
+    let depth = |x: &unipbd_core::Vector| {
+        let seen = Vector64::from_angle(-body.angle).rotate(wide(*x) - body.position);
+        -shape.nearest(seen).distance
+    };
+    fluid.map(|(x, _)| depth(x)).fold(f64::NEG_INFINITY, f64::max)
+}
+
+#[test]
+fn a_concave_obstacle_holds_water_and_a_stone_and_feels_their_weight() {
+    let scene = scene(TROUGH);
+    let mut solver = build(&scene, 2);
+    let water = solver.phases().iter().filter(|phase| **phase == Phase::Liquid).count();
+    let (mut inside, mut carried, mut floor) = (f64::NEG_INFINITY, Vector64::ZERO, Vector64::ZERO);
+    run(&mut solver, 480, |solver| inside = inside.max(deepest(solver, &solver.bodies()[0])));
+    run(&mut solver, 60, |solver| {
+        let trough = &solver.bodies()[0];
+        carried += (trough.fluid_force + trough.contact_force) / 60.0;
+        floor += trough.contact_force / 60.0;
+    });
+    let kept = solver.positions().iter().zip(solver.phases());
+    let kept = kept.filter(|(x, phase)| **phase == Phase::Liquid && x.y > -0.01 && x.x.abs() < 1.25).count();
+    let stone = &solver.bodies()[1];
+    let weight = 9.81 * (1000.0 * scene.spacing * scene.spacing * water as f64 + stone.mass);
+    bars("concave obstacle", |bars| {
+        bars.within("weight carried over weight", -carried.y / weight, 0.98, 1.02);
+        bars.at_most("sideways force over weight", carried.x.abs() / weight, 0.02);
+        bars.at_most("depth of water inside [spacings]", inside / scene.spacing, 0.1);
+        bars.at_least("water kept", kept as f64 / water as f64, 1.0);
+        bars.within("height of the stone over the floor", stone.position.y / 0.15, 0.99, 1.01);
+        // Flush on the floor it has no water below: it presses with its weight and that of the water above it.
+        bars.at_least("force of the stone on the floor over its weight", -floor.y / (9.81 * stone.mass), 1.0);
+    });
+}
+
+/// A jet of hot gas below a vault that is open downwards.
+const VAULT: &str = r#"
+spacing = 0.02
+[[gas]]
+name = "air"
+drag = 20.0
+lifetime = 3.0
+[[smoke]]
+name = "smoke"
+lifetime = 3.0
+[[emitter]]
+material = "air"
+position = [0.0, 0.1]
+width = 0.12
+speed = 1.5
+temperature = 1.0
+smoke = { material = "smoke", per_particle = 3 }
+[[body]]
+name = "vault"
+kind = "static"
+position = [0.0, 0.8]
+outline = [[-0.25, -0.1], [-0.2, -0.1], [-0.2, 0.1], [0.2, 0.1], [0.2, -0.1], [0.25, -0.1], [0.25, 0.15], [-0.25, 0.15]]
+[[tank]]
+min = [-0.8, 0.0]
+max = [0.8, 2.0]
+open = ["top"]
+"#;
+
+#[test]
+fn gas_fills_a_vault_and_flows_round_it() {
+    let mut solver = build(&scene(VAULT), 2);
+    let (mut inside, mut lift) = (f64::NEG_INFINITY, 0.0f64);
+    run(&mut solver, 180, |solver| {
+        inside = inside.max(deepest(solver, &solver.bodies()[0]));
+        lift = lift.max(solver.bodies()[0].fluid_force.y);
+    });
+    let count = |place: fn(Vector64) -> bool| solver.positions().iter().filter(|x| place(wide(**x))).count() as f64;
+    bars("vault in a jet", |bars| {
+        bars.at_most("depth of gas inside [spacings]", inside / 0.02, 0.1);
+        bars.at_least("particles in the hollow", count(|x| x.x.abs() < 0.2 && x.y > 0.7 && x.y < 0.9), 100.0);
+        bars.at_least("particles above", count(|x| x.y > 1.0), 100.0);
+        bars.at_least("lift of the jet [N]", lift, 0.01);
+    });
+}
