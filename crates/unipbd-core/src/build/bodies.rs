@@ -18,7 +18,13 @@ pub(super) fn build(scene: &Scene) -> (Bodies, Contacts) {
             let _ = bodies.add(spec);
         }
     }
-    let mut contacts = Contacts::new(&walls(scene), ContactSettings::default());
+    let settings = ContactSettings {
+        method: scene.contacts.method,
+        relaxation: scene.contacts.relaxation(),
+        mass_scaling: scene.contacts.mass_scaling,
+        ..ContactSettings::default()
+    };
+    let mut contacts = Contacts::new(&walls(scene), settings);
     for description in &scene.joint {
         if let Some(joint) = joint(description, &bodies) {
             contacts.add_joint(joint);

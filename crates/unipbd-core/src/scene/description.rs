@@ -1,8 +1,8 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Block, BodyDescription, Disc, Emitter, Expect, Gas, HalfPlane, Heater, Injector, JointDescription, Liquid,
-    Obstacle, Points, Rope, Sink, Smoke, Solid, SolverSettings, Tank, Wave,
+    Block, BodyDescription, ContactDescription, Disc, Emitter, Expect, Gas, HalfPlane, Heater, Injector,
+    JointDescription, Liquid, Obstacle, Points, Rope, Sink, Smoke, Solid, SolverSettings, Tank, Wave,
 };
 
 /// A whole scene. All quantities are in SI units; angles carry the suffix `_deg`.
@@ -26,6 +26,9 @@ pub struct Scene {
     pub seed: u64,
     /// How the constraints are solved.
     pub solver: SolverSettings,
+    /// How contacts of bodies are solved.
+    #[serde(skip_serializing_if = "ContactDescription::is_default")]
+    pub contacts: ContactDescription,
     /// The air around an open scene.
     pub environment: Environment,
     /// Periodic axes and the region outside which particles are removed.
@@ -102,6 +105,7 @@ impl Default for Scene {
             fps: 60.0,
             seed: 0,
             solver: SolverSettings::default(),
+            contacts: ContactDescription::default(),
             environment: Environment::default(),
             domain: Domain::default(),
             view: View::default(),

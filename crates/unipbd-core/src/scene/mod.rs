@@ -4,6 +4,7 @@
 //! [`Scene::estimate`] says what it would cost, [`Scene::build`] makes a [`Solver`](crate::Solver).
 
 mod bodies;
+mod contacts;
 mod copies;
 mod description;
 mod estimate;
@@ -27,6 +28,7 @@ mod waves;
 pub use bodies::{
     BodyDescription, Copies, Heap, JointDescription, JointRule, MotionDescription, RotationRule, Station,
 };
+pub use contacts::{ContactDescription, ContactMethod};
 pub use description::{Domain, Environment, Scene, View};
 pub use estimate::{BYTES_PER_PARTICLE, Estimate, SECONDS_PER_PARTICLE_AND_SUBSTEP};
 pub use expect::{BodyExpectation, Expect, MaterialExpectation};

@@ -73,6 +73,8 @@ class Keys:
     """The air around an open scene."""
     solver: Table
     """How the constraints are solved."""
+    contacts: Table
+    """How contacts of bodies are solved."""
     view: Table
     """What pictures show."""
     expect: Table

@@ -213,6 +213,32 @@ impl Contact {
         push
     }
 
+    /// One iteration on the positions alone, as in Macklin et al. 2014: what lies too deep is taken out, and of the
+    /// way the bodies slid past each other what friction holds back for this depth (equations 23 to 25).
+    pub fn solve_positions(&mut self, displacements: &[Twist]) -> Push {
+        let (a, b) = (entry(displacements, self.who.a), entry(displacements, self.who.b));
+        let (points, gains, surface) = (self.points, self.gains, self.who.surface);
+        let excess = points.map(|point| self.opening(&point, &a, &b) + point.gap.max(0.0));
+        let normal = complementarity::solve(&gains.normal, excess, [0.0; 2], [0.0; 2]);
+        let total = normal[0] + normal[1];
+        let mut push = Push::default();
+        for k in 0..self.count as usize {
+            let cross = gains.cross[k][0] * normal[0] + gains.cross[k][1] * normal[1];
+            let share = if total > 0.0 { normal[k] / total } else { 0.0 };
+            let stop = (self.slide(&points[k], &a, &b) + cross) * share / gains.tangent[k];
+            let (sticks, drag) = (surface.static_friction * normal[k], surface.kinetic_friction * normal[k]);
+            let held = if stop.abs() < sticks { stop } else { stop.clamp(-drag, drag) };
+            self.add_push(&mut push, &points[k], normal[k], -held);
+            self.points[k].normal_impulse += normal[k];
+            self.points[k].tangent_impulse -= held;
+        }
+        if self.who.rolling_arm > 0.0 && total > 0.0 {
+            self.rolling_impulse = 0.0;
+            self.resist_rolling(a.angular - b.angular, total, &mut push);
+        }
+        push
+    }
+
     /// Rolling resistance, after the other impulses of the contact have turned the bodies.
     fn resist_rolling(&mut self, turn: f64, normal: f64, push: &mut Push) {
         let limit = self.who.rolling_arm * normal;

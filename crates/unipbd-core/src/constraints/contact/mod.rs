@@ -19,10 +19,12 @@ mod find;
 mod jacobi;
 mod joint;
 mod manifold;
+mod mass_scaling;
 mod narrow;
 mod pieces;
 mod sleep;
 
+pub use crate::scene::ContactMethod;
 pub use joint::{DistanceRule, Joint, JointKind, Motor};
 pub use sleep::SleepSettings;
 
@@ -39,6 +41,12 @@ use sleep::Islands;
 /// How contacts are solved.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ContactSettings {
+    /// How their pushes are found.
+    pub method: ContactMethod,
+    /// Mass scaling k of Macklin et al. 2014 (equation 21) [1/m]; 0 for none. Contacts see masses m exp(-k h), h
+    /// the height above the lowest support of a heap: upper bodies weigh less on lower ones, and fewer substeps
+    /// carry a heap. Loads of contacts are then those of the scaled masses, and an impact loses momentum.
+    pub mass_scaling: f64,
     /// Contacts that share a body count this much less: over-relaxation of the split Jacobi sweep, below 2.
     /// With an odd number of iterations in a substep warm starting is stable only up to 4/3 (one) or 1.69 (three).
     pub relaxation: f64,
@@ -53,6 +61,8 @@ pub struct ContactSettings {
 impl Default for ContactSettings {
     fn default() -> Self {
         ContactSettings {
+            method: ContactMethod::Split,
+            mass_scaling: 0.0,
             relaxation: 1.8,
             depenetration: Depenetration::default(),
             restitution_iterations: 6,
@@ -92,6 +102,8 @@ pub struct Contacts {
     islands: Islands,
     jacobi: Jacobi,
     split: Vec<Response>,
+    /// Responses as contacts see them; empty without mass scaling: then they are those of the bodies.
+    scaled: Vec<Response>,
     counts: Vec<u32>,
     corrections: Vec<Twist>,
     wall_impulses: Vec<Vector64>,
@@ -99,6 +111,7 @@ pub struct Contacts {
     dt: f64,
     warm_factor: f64,
     gravity: f64,
+    up: Vector64,
 }
 
 /// What can be read about a contact.
@@ -130,6 +143,7 @@ impl Contacts {
             islands: Islands::default(),
             jacobi: Jacobi::default(),
             split: Vec::new(),
+            scaled: Vec::new(),
             counts: Vec::new(),
             corrections: Vec::new(),
             wall_impulses: vec![Vector64::ZERO; walls.len()],
@@ -137,6 +151,7 @@ impl Contacts {
             dt: 0.0,
             warm_factor: 1.0,
             gravity: 0.0,
+            up: Vector64::ZERO,
         }
     }
 
@@ -161,6 +176,7 @@ impl Contacts {
         self.warm_factor = if self.dt > 0.0 { (dt / self.dt) * (dt / self.dt) } else { 1.0 };
         self.dt = dt;
         self.gravity = gravity.length();
+        self.up = -gravity.normalize_or_zero();
         self.islands.resize(bodies.len());
         self.islands.wake_pushed(bodies);
         loop {
@@ -169,7 +185,8 @@ impl Contacts {
                 break;
             }
         }
-        self.finder.keep_impulses(self.warm_factor, dt * dt);
+        let kept = if self.settings.method == ContactMethod::Split { self.warm_factor } else { 0.0 };
+        self.finder.keep_impulses(kept, dt * dt);
         let slow = 2.0 * self.gravity * dt;
         for contact in self.finder.contacts_mut() {
             contact.note_velocities(&bodies.velocities, slow);
@@ -214,8 +231,12 @@ impl Contacts {
             count(b);
         }
         let relaxation = self.settings.relaxation;
+        if self.settings.mass_scaling > 0.0 {
+            mass_scaling::scale(self.finder.contacts(), bodies, self.up, self.settings.mass_scaling, &mut self.scaled);
+        }
+        let responses = if self.scaled.is_empty() { &bodies.responses } else { &self.scaled };
         self.split.clear();
-        self.split.extend(bodies.responses.iter().zip(&self.counts).map(|(response, &count)| {
+        self.split.extend(responses.iter().zip(&self.counts).map(|(response, &count)| {
             let shares = (f64::from(count) / relaxation).max(1.0);
             Response { linear: response.linear * shares, angular: response.angular * shares }
         }));
@@ -224,7 +245,13 @@ impl Contacts {
     /// One Jacobi iteration of all contacts and joints on the displacements.
     pub fn iterate(&mut self, bodies: &mut Bodies) {
         let displacements = &bodies.displacements;
-        self.jacobi.sweep(self.finder.contacts_mut(), bodies.len(), |contact| contact.solve(displacements));
+        let contacts = self.finder.contacts_mut();
+        match self.settings.method {
+            ContactMethod::Split => self.jacobi.sweep(contacts, bodies.len(), |contact| contact.solve(displacements)),
+            ContactMethod::Averaged => {
+                self.jacobi.sweep(contacts, bodies.len(), |contact| contact.solve_positions(displacements));
+            }
+        }
         for linked in self.joints.iter_mut().filter(|linked| is_movable(linked, bodies)) {
             let pushes = linked.solve(&bodies.displacements);
             add_pair(&mut self.jacobi.sums, linked.bodies(), pushes);
@@ -233,7 +260,8 @@ impl Contacts {
     }
 
     fn apply_displacements(&mut self, bodies: &mut Bodies) {
-        self.jacobi.apply(&bodies.responses, &mut bodies.displacements);
+        let responses = if self.scaled.is_empty() { &bodies.responses } else { &self.scaled };
+        self.jacobi.apply(responses, &mut bodies.displacements);
         let per_time = 1.0 / self.dt;
         for (load, push) in bodies.contact_loads.iter_mut().zip(&self.jacobi.sums) {
             *load += push.scaled(per_time);
@@ -253,7 +281,8 @@ impl Contacts {
                         Default::default()
                     }
                 });
-                self.jacobi.apply(&bodies.responses, &mut bodies.velocities);
+                let responses = if self.scaled.is_empty() { &bodies.responses } else { &self.scaled };
+                self.jacobi.apply(responses, &mut bodies.velocities);
                 for (load, push) in bodies.contact_loads.iter_mut().zip(&self.jacobi.sums) {
                     *load += *push;
                 }
@@ -288,7 +317,8 @@ impl Contacts {
         }
         self.corrections.clear();
         self.corrections.resize(bodies.len(), Twist::ZERO);
-        self.jacobi.apply(&bodies.responses, &mut self.corrections);
+        let responses = if self.scaled.is_empty() { &bodies.responses } else { &self.scaled };
+        self.jacobi.apply(responses, &mut self.corrections);
         for (pose, moved) in bodies.poses.iter_mut().zip(&self.corrections) {
             pose.position += moved.linear;
             pose.angle += moved.angular;

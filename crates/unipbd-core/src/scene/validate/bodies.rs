@@ -13,6 +13,7 @@ const MOST_BODIES: f64 = 200_000.0;
 const COEFFICIENT_HINT: &str = "a Coulomb coefficient, such as 0.5; 0 is slippery";
 
 pub(super) fn check(checker: &mut Checker) {
+    check_contacts(checker);
     let mut names = BTreeMap::new();
     let mut total = 0.0;
     for (index, body) in checker.scene.body.iter().enumerate() {
@@ -30,6 +31,16 @@ pub(super) fn check(checker: &mut Checker) {
             check_place(checker, &path, body);
         }
     }
+}
+
+fn check_contacts(checker: &mut Checker) {
+    let (contacts, path) = (checker.scene.contacts, KeyPath::key("contacts"));
+    if let Some(relaxation) = contacts.relaxation {
+        let hint = "1 is plain, 2 the most that can be stable";
+        checker.range(path.then("relaxation"), relaxation, Allowed::Between(1.0, 2.0), hint);
+    }
+    let hint = "in 1/m: with 1, a body a metre up weighs 1/e of itself on the one below; 0 is off";
+    checker.range(path.then("mass_scaling"), contacts.mass_scaling, Allowed::NotNegative, hint);
 }
 
 /// Exactly one outline, and one that has an area.
