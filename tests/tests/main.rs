@@ -8,6 +8,7 @@ mod filled_gas;
 mod liquids;
 mod obstacles;
 mod plume;
+mod shape_matching;
 mod smoke;
 mod stages;
 mod tunnelling;

@@ -5,7 +5,7 @@ mod carve;
 mod ropes;
 mod waves;
 
-use crate::constraints::{Adhesion, ConstraintGroup, Density, DensitySettings, MassDensity};
+use crate::constraints::{Adhesion, ConstraintGroup, Density, DensitySettings, MassDensity, ShapeMatching};
 use crate::effects::{
     Baroclinic, Cohesion, Conduction, Drag, Effect, Heating, QuadraticDrag, ShearViscosity, SmokeAdvection, Viscosity,
     VorticityConfinement,
@@ -18,7 +18,7 @@ use crate::particles::{NewParticle, OptionalColumns, Particles};
 use crate::phase::{MaterialIndex, Phase};
 use crate::rigid::RigidBodies;
 use crate::rng::Rng;
-use crate::scene::{GradientPoint, MaterialRef, Points, Problems, Scene, disc_points};
+use crate::scene::{BodySolver, GradientPoint, MaterialRef, Points, Problems, Scene, disc_points};
 use crate::sleep::LiquidSleep;
 use crate::sources::{EmitterSystem, RemovalRules};
 use crate::step::{BodyForce, Parts, Solver, SubstepRule};
@@ -87,15 +87,17 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     // Sums and corrections of each iteration, and about one pass for each effect.
     let passes = 2.0 * f64::from(scene.solver.iterations) + effects.len() as f64;
     let cost = ListCost { radius: scene.solver.kernel_radius, passes };
+    let reach = real(settings.kernel_radius);
+    let groups = groups(scene, settings, ropes, rigid.as_ref());
     Parts {
         rigid,
         particles,
         materials: shown_materials(scene),
         forces: scene.materials().map(|material| body_force(material, scene)).collect(),
         walls: Walls::new(scene),
-        neighbors: Neighbors::new(periodic, real(settings.kernel_radius), real(least_skin), cost),
+        neighbors: Neighbors::new(periodic, reach, real(least_skin), cost),
         cover,
-        groups: groups(scene, settings, ropes),
+        groups,
         effects,
         smoke: (!scene.smoke.is_empty()).then(|| SmokeAdvection::new(scene)),
         emitters: (!scene.emitter.is_empty() || !scene.injector.is_empty()).then(|| EmitterSystem::new(scene, seed)),
@@ -113,7 +115,12 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     }
 }
 
-fn groups(scene: &Scene, density: DensitySettings, ropes: ropes::Ropes) -> Vec<Box<dyn ConstraintGroup>> {
+fn groups(
+    scene: &Scene,
+    density: DensitySettings,
+    ropes: ropes::Ropes,
+    rigid: Option<&RigidBodies>,
+) -> Vec<Box<dyn ConstraintGroup>> {
     let mut groups: Vec<Box<dyn ConstraintGroup>> = Vec::new();
     // A force: before what holds against it.
     if let Some(adhesion) = Adhesion::new(scene) {
@@ -124,6 +131,9 @@ fn groups(scene: &Scene, density: DensitySettings, ropes: ropes::Ropes) -> Vec<B
             None => Box::new(Density::new(density)),
             Some(description) => Box::new(MassDensity::new(scene, description)),
         });
+    }
+    if let Some(rigid) = rigid.filter(|rigid| rigid.any_matched()) {
+        groups.push(Box::new(ShapeMatching::new(rigid.members(), scene.spacing)));
     }
     groups.extend(ropes.groups());
     groups
@@ -175,7 +185,9 @@ fn body_force(material: MaterialRef<'_>, scene: &Scene) -> BodyForce {
         }
         MaterialRef::Gas(gas) => BodyForce { acceleration: vector(gravity * gas.gravity_factor), thermal: true },
         MaterialRef::Solid(solid) => BodyForce { acceleration: vector(gravity * solid.gravity_factor), thermal: false },
-        MaterialRef::Smoke(_) | MaterialRef::Rigid => BodyForce { acceleration: Vector::ZERO, thermal: false },
+        // For bodies that are particles: all other samples have no inertia of their own.
+        MaterialRef::Rigid => BodyForce { acceleration: vector(gravity), thermal: false },
+        MaterialRef::Smoke(_) => BodyForce { acceleration: Vector::ZERO, thermal: false },
     }
 }
 
@@ -186,16 +198,20 @@ fn rigid_bodies(scene: &Scene, particles: &mut Particles) -> Option<RigidBodies>
     }
     let (bodies, contacts) = bodies::build(scene);
     let fluid = scene.materials().any(|material| material.phase().is_fluid());
-    let first_sample = fluid.then(|| particles.ids_given());
-    if fluid {
+    let seen = fluid || scene.body.iter().any(|body| body.solver == BodySolver::ShapeMatching);
+    let first_sample = seen.then(|| particles.ids_given());
+    if seen {
         let material = scene.materials().count() as MaterialIndex - 1;
         for body in 0..bodies.len() as u32 {
+            let view = &bodies.views()[body as usize];
+            let matched = bodies.stiffness(body as usize).is_some();
+            let inverse_mass = if matched { real(view.samples.len() as f64 / view.mass) } else { 0.0 };
             for &sample in bodies.samples(body) {
                 let place = bodies.pose(body).apply(sample);
                 particles.push(NewParticle {
                     position: vector(place),
                     velocity: vector(bodies.velocity_at(body, place)),
-                    inverse_mass: 0.0,
+                    inverse_mass,
                     material,
                     phase: Phase::Rigid,
                     temperature: 0.0,

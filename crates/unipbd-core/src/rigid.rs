@@ -2,6 +2,7 @@
 //! fluid that stays outside.
 
 mod expel;
+mod matched;
 
 use crate::bodies::{Bodies, Body};
 use crate::constraints::contact::Contacts;
@@ -27,6 +28,8 @@ pub struct RigidBodies {
     trespassers: Vec<Trespasser>,
     /// Ends of ropes that move with bodies.
     tied: Vec<Tied>,
+    /// Bodies that are particles, drawn back to their shapes.
+    matched: Vec<matched::Matched>,
 }
 
 /// A point that moves with a body.
@@ -52,7 +55,7 @@ impl RigidBodies {
             let gap = if seen { expel::widest_gap(body, spacing) } else { 0.0 };
             near.push(gap.max(LEAST_NEAR * spacing) as Real);
         }
-        RigidBodies {
+        let mut rigid = RigidBodies {
             bodies,
             contacts,
             first_sample: first,
@@ -60,7 +63,10 @@ impl RigidBodies {
             far: (0.5 * spacing) as Real,
             trespassers: Vec::new(),
             tied: Vec::new(),
-        }
+            matched: Vec::new(),
+        };
+        rigid.list_matched(spacing);
+        rigid
     }
 
     /// From now on a particle moves with the body of this name, from a place in the world [m].
@@ -166,7 +172,11 @@ impl RigidBodies {
 
     /// Visits the samples and what is tied to bodies.
     fn each_follower(&self, rows: &RowIndex, mut visit: impl FnMut(u32, Vector64, usize)) {
-        self.each_sample(rows, &mut visit);
+        self.each_sample(rows, |body, place, row| {
+            if self.bodies.stiffness(body as usize).is_none() {
+                visit(body, place, row);
+            }
+        });
         for tied in &self.tied {
             if let Some(row) = rows.row(tied.id) {
                 visit(tied.body, tied.place, row as usize);
@@ -187,7 +197,8 @@ impl RigidBodies {
     /// Whether the sample of this id may sleep: its body is not moved by a script.
     pub(crate) fn may_rest(&self, id: u32) -> bool {
         let body = self.first_sample.partition_point(|&first| first <= id) - 1;
-        self.bodies.is_dynamic(body) || !self.bodies.is_active(body)
+        let matched = self.bodies.stiffness(body).is_some();
+        !matched && (self.bodies.is_dynamic(body) || !self.bodies.is_active(body))
     }
 
     /// Visits the sleeping samples of bodies that are awake.

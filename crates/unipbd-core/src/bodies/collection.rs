@@ -3,6 +3,7 @@
 use super::{Body, BodyKind, BodySpec, MassSpec, Motion, Pose, Rotation, Twist};
 use crate::math::Vector64;
 use crate::shapes::{Core, Shape, ShapeError};
+use std::f64::consts::{PI, TAU};
 
 /// How a body answers to a push: its inverse mass and inertia, both 0 for what nothing moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -40,6 +41,8 @@ pub struct Bodies {
     /// The same, and 0 while asleep.
     pub(crate) responses: Vec<Response>,
     pub(crate) asleep: Vec<bool>,
+    /// Stiffness of those that are particles, drawn back to their shape: their pose only follows.
+    matched: Vec<Option<f64>>,
     /// Contacts and joints: sum of impulses since the frame began [N s], [N m s].
     pub(crate) contact_loads: Vec<Twist>,
     fluid_loads: Vec<Twist>,
@@ -81,7 +84,9 @@ impl Bodies {
             MassSpec::Mass(mass) => mass,
         };
         let inertia = mass * moments.second / moments.area;
+        let matched = spec.matched.filter(|_| spec.kind == BodyKind::Dynamic);
         let response = match (spec.kind, spec.rotation) {
+            _ if matched.is_some() => Response::default(),
             (BodyKind::Dynamic, Rotation::Free) => Response { linear: 1.0 / mass, angular: 1.0 / inertia },
             (BodyKind::Dynamic, Rotation::Locked) => Response { linear: 1.0 / mass, angular: 0.0 },
             _ => Response::default(),
@@ -100,6 +105,7 @@ impl Bodies {
         self.awake_responses.push(response);
         self.responses.push(response);
         self.asleep.push(false);
+        self.matched.push(matched);
         self.contact_loads.push(Twist::ZERO);
         self.fluid_loads.push(Twist::ZERO);
         self.pushed.push(false);
@@ -117,6 +123,7 @@ impl Bodies {
     /// Whether both hold bodies of the same shapes and names, perhaps at different times.
     pub(crate) fn is_like(&self, other: &Bodies) -> bool {
         let bodies = self.len();
+        let same_kind = self.matched == other.matched;
         let twists = [&self.velocities, &self.displacements, &self.contact_loads, &self.fluid_loads];
         let responses = [&self.awake_responses, &self.responses];
         let whole = twists.iter().all(|column| column.len() == bodies)
@@ -126,7 +133,11 @@ impl Bodies {
             && self.cores == other.cores
             && self.scripts.len() == bodies;
         let same = |(a, b): (&Body, &Body)| a.name == b.name && a.kind == b.kind && a.samples.len() == b.samples.len();
-        whole && self.views.len() == bodies && bodies == other.len() && self.views.iter().zip(&other.views).all(same)
+        whole
+            && same_kind
+            && self.views.len() == bodies
+            && bodies == other.len()
+            && self.views.iter().zip(&other.views).all(same)
     }
 
     /// The bodies as they are read from outside, in id order; up to date after [`Bodies::finish_frame`].
@@ -177,13 +188,26 @@ impl Bodies {
 
     /// Whether contacts or forces can move it.
     pub(crate) fn is_dynamic(&self, id: usize) -> bool {
-        self.views[id].kind == BodyKind::Dynamic
+        self.views[id].kind == BodyKind::Dynamic && self.matched[id].is_none()
+    }
+
+    /// Stiffness of a body whose shape is matched.
+    pub(crate) fn stiffness(&self, id: usize) -> Option<f64> {
+        self.matched[id]
+    }
+
+    /// A body that is particles is where they are: its pose and velocity follow, and its outline where it is soft.
+    pub(crate) fn follow(&mut self, id: usize, pose: Pose, velocity: Twist, outline: Option<Vec<Vector64>>) {
+        let turn = (pose.angle - self.poses[id].angle + PI).rem_euclid(TAU) - PI;
+        self.poses[id] = Pose { angle: self.poses[id].angle + turn, ..pose };
+        self.velocities[id] = velocity;
+        self.views[id].outline = outline.unwrap_or_else(|| std::mem::take(&mut self.views[id].outline));
     }
 
     /// Whether it may be somewhere else after the next substep.
     pub(crate) fn is_active(&self, id: usize) -> bool {
         match self.views[id].kind {
-            BodyKind::Dynamic => !self.asleep[id],
+            BodyKind::Dynamic => !self.asleep[id] && self.matched[id].is_none(),
             BodyKind::Kinematic => self.scripts[id].driven.is_some() || !self.scripts[id].motion.is_still(),
             BodyKind::Static => false,
         }
@@ -194,7 +218,7 @@ impl Bodies {
     pub fn predict(&mut self, dt: f64, time: f64, gravity: Vector64) {
         for id in 0..self.len() {
             self.displacements[id] = match self.views[id].kind {
-                BodyKind::Dynamic if !self.asleep[id] => {
+                BodyKind::Dynamic if !self.asleep[id] && self.matched[id].is_none() => {
                     let mut moved = self.velocities[id].scaled(dt);
                     moved.linear += gravity * (self.scripts[id].gravity_factor * dt * dt);
                     moved

@@ -108,6 +108,8 @@ pub struct BodySpec {
     pub filter: CollisionFilter,
     /// Whether it may turn.
     pub rotation: Rotation,
+    /// Stiffness of a dynamic body whose shape is matched, 0 to 1; none for a rigid pose.
+    pub matched: Option<f64>,
     /// Factor on gravity.
     pub gravity_factor: f64,
     /// Script of a kinematic body, for the origin of its outline.
@@ -127,6 +129,7 @@ impl BodySpec {
             surface: Surface::default(),
             filter: CollisionFilter::default(),
             rotation: Rotation::Free,
+            matched: None,
             gravity_factor: 1.0,
             motion: Motion::Still,
         }

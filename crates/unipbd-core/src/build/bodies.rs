@@ -6,8 +6,13 @@ use crate::bodies::{
 };
 use crate::constraints::contact::{ContactSettings, Contacts, DistanceRule, Joint, JointKind, Motor};
 use crate::math::Vector64;
-use crate::scene::{BodyDescription, JointDescription, JointRule, MotionDescription, Rope, RotationRule, Scene, Side};
-use crate::shapes::Wall;
+use crate::scene::{
+    BodyDescription, BodySolver, JointDescription, JointRule, MotionDescription, Rope, RotationRule, Scene, Side,
+};
+use crate::shapes::{Shape, Wall};
+
+/// Corners of a disc whose shape is matched.
+const ROUND: usize = 48;
 
 /// All bodies of a scene, and the contacts and joints between them and its walls.
 pub(super) fn build(scene: &Scene) -> (Bodies, Contacts) {
@@ -60,7 +65,11 @@ fn specification(description: &BodyDescription, name: String, position: Vector64
     BodySpec {
         name,
         kind: description.kind,
-        shape: description.shape(),
+        shape: match (description.solver, description.radius) {
+            // The outline of what deforms is drawn as it is bent.
+            (BodySolver::ShapeMatching, Some(radius)) => Shape::regular(ROUND, radius),
+            _ => description.shape(),
+        },
         pose: Pose { position, angle: description.angle_deg.to_radians() },
         velocity: Twist { linear: description.velocity.into(), angular: description.spin_deg.to_radians() },
         mass: description.mass.map_or(MassSpec::Density(description.density), MassSpec::Mass),
@@ -78,6 +87,7 @@ fn specification(description: &BodyDescription, name: String, position: Vector64
             RotationRule::Free => Rotation::Free,
             RotationRule::Locked => Rotation::Locked,
         },
+        matched: (description.solver == BodySolver::ShapeMatching).then_some(description.stiffness),
         gravity_factor: description.gravity_factor,
         motion: description.motion.as_ref().map_or(Motion::Still, motion),
     }

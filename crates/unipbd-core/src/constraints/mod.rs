@@ -13,6 +13,7 @@ mod density;
 mod distance;
 mod mass_density;
 mod projection;
+mod shape_matching;
 
 use std::ops::BitOr;
 
@@ -22,6 +23,7 @@ pub use corrections::Corrections;
 pub use density::{Density, DensityMaterial, DensitySettings};
 pub use distance::{Distance, Tether};
 pub use mass_density::MassDensity;
+pub use shape_matching::{Member, ShapeMatching};
 
 use crate::math::{Real, Vector};
 use crate::neighbors::Neighbors;

@@ -13,6 +13,13 @@ pub struct BodyDescription {
     /// Dynamic, kinematic or static.
     #[serde(default = "dynamic")]
     pub kind: BodyKind,
+    /// How a dynamic body moves: as a rigid pose, or as particles drawn back to its shape.
+    #[serde(default)]
+    pub solver: BodySolver,
+    /// Part of its deformation that a body with `solver = "shape_matching"` takes back in a 60th of a second, 0 to 1:
+    /// 1 is rigid.
+    #[serde(default = "one")]
+    pub stiffness: f64,
     /// Radius of a disc [m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
@@ -69,6 +76,19 @@ pub struct BodyDescription {
     /// More of the same body, in rows.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub copies: Option<Copies>,
+}
+
+/// How a dynamic body moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum BodySolver {
+    /// A place and an angle: exact contacts, stacks that stand.
+    #[default]
+    Pose,
+    /// Every lattice sample is a particle, drawn back to the shape (Macklin et al. 2014): soft where its
+    /// stiffness is below 1. Its contacts are those of particles, with normals of the signed distance.
+    ShapeMatching,
 }
 
 /// Whether a body turns.

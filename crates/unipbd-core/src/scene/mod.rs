@@ -26,7 +26,7 @@ mod walls;
 mod waves;
 
 pub use bodies::{
-    BodyDescription, Copies, Heap, JointDescription, JointRule, MotionDescription, RotationRule, Station,
+    BodyDescription, BodySolver, Copies, Heap, JointDescription, JointRule, MotionDescription, RotationRule, Station,
 };
 pub use contacts::{ContactDescription, ContactMethod};
 pub use description::{Domain, Environment, Scene, View};

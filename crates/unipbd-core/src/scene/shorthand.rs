@@ -1,6 +1,8 @@
 //! Short ways to write scenes in Rust.
 
-use super::{Block, BodyDescription, HalfPlane, Liquid, Obstacle, RotationRule, Side, Slip, Smoke, Tank};
+use super::{
+    Block, BodyDescription, BodySolver, HalfPlane, Liquid, Obstacle, RotationRule, Side, Slip, Smoke, Tank,
+};
 use crate::bodies::BodyKind;
 
 impl Liquid {
@@ -66,6 +68,8 @@ impl BodyDescription {
         BodyDescription {
             name: String::new(),
             kind: BodyKind::Dynamic,
+            solver: BodySolver::Pose,
+            stiffness: 1.0,
             radius: None,
             size: None,
             outline: None,

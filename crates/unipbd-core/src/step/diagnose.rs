@@ -98,8 +98,10 @@ impl World {
     fn body_sums(&self) -> Sums {
         let gravity = wide(self.parts.gravity);
         let bodies = self.parts.rigid.as_ref().map_or(&[][..], |rigid| rigid.views());
-        let moving = bodies.iter().filter(|body| body.kind == BodyKind::Dynamic);
-        moving.fold(Sums::default(), |sums, body| {
+        // Bodies that are particles were counted with them.
+        let posed = |id: usize| self.parts.rigid.as_ref().is_none_or(|rigid| rigid.bodies.stiffness(id).is_none());
+        let moving = bodies.iter().enumerate().filter(|(id, body)| body.kind == BodyKind::Dynamic && posed(*id));
+        moving.fold(Sums::default(), |sums, (_, body)| {
             let (x, v, spin) = (body.position, body.velocity, body.angular_velocity);
             // A body that never turns may have an infinite moment of inertia.
             let turning = if spin == 0.0 { 0.0 } else { body.inertia * spin };

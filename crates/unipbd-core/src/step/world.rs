@@ -244,6 +244,7 @@ impl World {
     pub fn end_frame(&mut self, begun: Begun) -> FrameReport {
         self.fall_asleep();
         if let Some(rigid) = &mut self.parts.rigid {
+            rigid.follow_particles(&self.parts.particles, &self.rows);
             rigid.finish_frame(self.parts.frame_time);
         }
         let inverse = 1.0 / self.parts.frame_time;

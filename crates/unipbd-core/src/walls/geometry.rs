@@ -110,6 +110,12 @@ impl Walls {
         planes.chain(self.rectangles.iter().filter_map(move |rectangle| rectangle.hit_on_path(start, x)))
     }
 
+    /// The walls that a disc about `x` overlaps: by how much, and the way out.
+    pub fn touches(&self, x: Vector, radius: Real) -> impl Iterator<Item = Hit> + '_ {
+        let planes = self.planes.iter().filter_map(move |plane| plane.hit(x - plane.normal * radius));
+        planes.chain(self.rectangles.iter().filter_map(move |rectangle| rectangle.touch(x, radius)))
+    }
+
     /// Square of the largest speed of a wall along itself [m^2/s^2].
     pub fn fastest_squared(&self) -> Real {
         self.planes.iter().map(|plane| plane.velocity.length_squared()).fold(0.0, Real::max)
@@ -283,6 +289,22 @@ impl Rectangle {
         let sides = [(low.x, -Vector::X), (high.x, Vector::X), (low.y, -Vector::Y), (high.y, Vector::Y)];
         let (depth, normal) = sides.into_iter().min_by(|a, b| a.0.total_cmp(&b.0))?;
         Some(Hit { normal, depth, friction: self.friction, measured: self.measured })
+    }
+
+    /// A disc about `x` that reaches in.
+    fn touch(&self, x: Vector, radius: Real) -> Option<Hit> {
+        let apart = x - x.clamp(self.min, self.max);
+        let distance = apart.length();
+        if distance == 0.0 {
+            return self.hit(x).map(|hit| Hit { depth: hit.depth + radius, ..hit });
+        }
+        let hit = Hit {
+            normal: apart / distance,
+            depth: radius - distance,
+            friction: self.friction,
+            measured: self.measured,
+        };
+        (distance < radius).then_some(hit)
     }
 
     /// The way out for a path that ends inside or beyond: the side nearest to its end if it can have come in

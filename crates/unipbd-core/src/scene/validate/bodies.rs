@@ -6,7 +6,7 @@ use super::checker::{Allowed, Checker, number};
 use super::materials::excerpt;
 use super::motion;
 use crate::bodies::BodyKind;
-use crate::scene::{BodyDescription, KeyPath, Side, Tank};
+use crate::scene::{BodyDescription, BodySolver, KeyPath, RotationRule, Side, Tank};
 
 /// More bodies than this are refused.
 const MOST_BODIES: f64 = 200_000.0;
@@ -26,6 +26,7 @@ pub(super) fn check(checker: &mut Checker) {
         check_mass(checker, &path, body);
         check_surface(checker, &path, body);
         check_layers(checker, &path, body);
+        check_solver(checker, &path, body);
         motion::check(checker, &path, body);
         if check_copies(checker, &path, body, &mut total) && sound {
             check_place(checker, &path, body);
@@ -103,6 +104,37 @@ fn check_surface(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) 
     checker.range(path.then("rolling_friction"), body.rolling_friction, Allowed::NotNegative, hint);
     let hint = "rebound speed over impact speed: 0 stays, 1 bounces back as fast";
     checker.range(path.then("restitution"), body.restitution, Allowed::Between(0.0, 1.0), hint);
+}
+
+/// What holds for bodies that are particles, and for them alone.
+fn check_solver(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {
+    let hint = "the part of its deformation that it takes back in a 60th of a second: 1 is rigid";
+    checker.range(path.then("stiffness"), body.stiffness, Allowed::Between(0.0, 1.0), hint);
+    if body.solver == BodySolver::Pose {
+        if body.stiffness != 1.0 {
+            let hint = "add solver = \"shape_matching\", or leave it out";
+            checker.problem(path.then("stiffness"), "a rigid pose does not deform", hint);
+        }
+        return;
+    }
+    let hint = "leave it out, or leave out solver = \"shape_matching\"";
+    let mut refuse = |key: &str, given: bool| {
+        if given {
+            checker.problem(path.then(key), format!("`{key}` has no meaning for a body that is particles"), hint);
+        }
+    };
+    refuse("kind", body.kind != BodyKind::Dynamic);
+    refuse("rotation", body.rotation != RotationRule::Free);
+    refuse("restitution", body.restitution != 0.0);
+    refuse("rolling_friction", body.rolling_friction != 0.0);
+    refuse("gravity_factor", body.gravity_factor != 1.0);
+    let scene = checker.scene;
+    let joined = scene.joint.iter().any(|joint| joint.body == body.name || joint.other.as_ref() == Some(&body.name));
+    let tied = scene.rope.iter().any(|rope| rope.body.as_ref() == Some(&body.name));
+    if !body.name.is_empty() && (joined || tied) {
+        let hint = "join bodies with solver = \"pose\"";
+        checker.problem(path.then("solver"), "joints and ropes do not hold a body that is particles", hint);
+    }
 }
 
 fn check_layers(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {

@@ -1,0 +1,89 @@
+//! One body as particles, and the best rigid fit of its shape.
+
+use crate::bodies::{CollisionFilter, Surface};
+use crate::math::Vector64;
+use crate::shapes::{Nearest, Shape};
+use std::ops::Range;
+
+/// The time in which a body takes back the part of its deformation that is its stiffness [s].
+const STIFFNESS_TIME: f64 = 1.0 / 60.0;
+
+/// A body as particles: one whose shape is matched, or a rigid one that such bodies touch.
+pub struct Member {
+    /// Id of its first sample.
+    first: u32,
+    /// Samples in body coordinates [m]; their mean is the centre of mass.
+    rest: Vec<Vector64>,
+    /// Signed distance to the outline and its gradient, at each sample.
+    pub(super) distances: Vec<Nearest>,
+    /// Inverse mass of a sample [1/kg]; 0 where nothing moves the body.
+    pub(super) inverse_mass: f64,
+    /// Sum of the squared distances of the samples from the centre of mass [m^2].
+    pub(super) spread: f64,
+    /// Part of its deformation that it takes back in a 60th of a second; none where a pose moves it.
+    stiffness: Option<f64>,
+    pub(super) surface: Surface,
+    pub(super) filter: CollisionFilter,
+}
+
+/// The place of a shape that fits particles best.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Fit {
+    /// Centre of mass [m].
+    pub center: Vector64,
+    /// Cosine and sine of the angle.
+    pub rotation: Vector64,
+}
+
+impl Member {
+    /// A body of this shape whose samples have the ids from `first` on.
+    pub fn new(
+        first: u32,
+        rest: Vec<Vector64>,
+        shape: &Shape,
+        mass: f64,
+        stiffness: Option<f64>,
+        surface: Surface,
+        filter: CollisionFilter,
+    ) -> Member {
+        let distances = rest.iter().map(|&sample| shape.nearest(sample)).collect();
+        let inverse_mass = rest.len() as f64 / mass;
+        let spread = rest.iter().map(|r| r.length_squared()).sum::<f64>().max(f64::MIN_POSITIVE);
+        Member { first, rest, distances, spread, inverse_mass, stiffness, surface, filter }
+    }
+
+    pub(super) fn ids(&self) -> Range<u32> {
+        self.first..self.first + self.rest.len() as u32
+    }
+
+    pub(super) fn is_matched(&self) -> bool {
+        self.stiffness.is_some()
+    }
+
+    /// theta = atan2(A21 - A12, A11 + A22), A = sum m (x - c) r^T.
+    pub(super) fn fit(&self, places: &[Vector64]) -> Fit {
+        let center = places.iter().sum::<Vector64>() / places.len().max(1) as f64;
+        let turned = places.iter().zip(&self.rest).fold(Vector64::ZERO, |sum, (x, r)| {
+            let arm = *x - center;
+            sum + Vector64::new(r.dot(arm), r.perp_dot(arm))
+        });
+        let rotation = turned.normalize_or_zero();
+        Fit { center, rotation: if rotation == Vector64::ZERO { Vector64::X } else { rotation } }
+    }
+
+    /// Part of the way to the fit that a round goes in a substep of this length [s]; all of it where a pose moves
+    /// the body.
+    pub(super) fn part(&self, dt: f64) -> f64 {
+        let stiffness = self.stiffness.unwrap_or(1.0);
+        1.0 - (1.0 - stiffness).powf(dt / STIFFNESS_TIME / super::ROUNDS as f64)
+    }
+
+    /// Moves the samples towards the fit, as far as the stiffness goes in a substep of this length [s].
+    pub(super) fn draw_back(&self, places: &mut [Vector64], dt: f64) {
+        let part = self.part(dt);
+        let Fit { center, rotation } = self.fit(places);
+        for (place, r) in places.iter_mut().zip(&self.rest) {
+            *place += (center + rotation.rotate(*r) - *place) * part;
+        }
+    }
+}

@@ -1,0 +1,135 @@
+//! Shape matching (Müller et al. 2005; Macklin et al. 2014, section 5): bodies as particles that are drawn back
+//! to a shape, stiff or soft.
+//!
+//! Every lattice sample is a particle with a mass of its own, seen by the density of fluids and by the contacts of
+//! particles. An iteration first takes overlap out ([`contacts`]), then moves the samples of each
+//! body towards the best rigid fit of its shape, by a part of the way that is its stiffness. Both keep momentum;
+//! what the fit takes from a spin by moving samples along chords is given back to the velocities.
+
+mod contacts;
+mod member;
+
+pub use member::Member;
+
+use super::{ConstraintGroup, Corrections, Needs, Substep};
+use crate::math::{Real, Vector, Vector64, vector, wide};
+use contacts::Touch;
+use member::Fit;
+
+/// Rounds of contacts and fit in one iteration.
+const ROUNDS: usize = 2;
+
+/// The group of all bodies whose shape is matched, and of the samples of other bodies that they touch.
+pub struct ShapeMatching {
+    members: Vec<Member>,
+    spacing: f64,
+    /// Rows of the samples, member by member.
+    rows: Vec<Vec<u32>>,
+    /// Where the samples are in this iteration [m].
+    places: Vec<Vec<Vector64>>,
+    fits: Vec<Fit>,
+    touches: Vec<Touch>,
+    /// Angular momentum over dt that the fits took in this substep, by member [kg m^2].
+    taken: Vec<f64>,
+}
+
+impl ShapeMatching {
+    /// A group of these bodies, in ascending order of their samples' ids.
+    pub fn new(members: Vec<Member>, spacing: f64) -> Self {
+        let count = members.len();
+        ShapeMatching {
+            members,
+            spacing,
+            rows: vec![Vec::new(); count],
+            places: vec![Vec::new(); count],
+            fits: vec![Fit::default(); count],
+            touches: Vec::new(),
+            taken: vec![0.0; count],
+        }
+    }
+
+    fn place_all(&mut self, now: Substep<'_>) {
+        for (places, rows) in self.places.iter_mut().zip(&self.rows) {
+            places.clear();
+            places.extend(rows.iter().map(|&row| wide(now.particles.positions()[row as usize])));
+        }
+    }
+
+    fn fit_all(&mut self) {
+        for ((fit, member), places) in self.fits.iter_mut().zip(&self.members).zip(&self.places) {
+            *fit = member.fit(places);
+        }
+    }
+
+    /// Moves the samples of soft and stiff bodies towards their shapes.
+    fn draw_back(&mut self, now: Substep<'_>) {
+        for k in (0..self.members.len()).filter(|&k| self.members[k].is_matched()) {
+            let starts = |row: u32| wide(now.particles.starts()[row as usize]);
+            let spin = |places: &[Vector64], rows: &[u32]| -> f64 {
+                let center = places.iter().sum::<Vector64>() / places.len() as f64;
+                places.iter().zip(rows).map(|(x, &row)| (*x - center).perp_dot(*x - starts(row))).sum()
+            };
+            let before = spin(&self.places[k], &self.rows[k]);
+            let member = &self.members[k];
+            member.draw_back(&mut self.places[k], f64::from(now.dt));
+            self.taken[k] += (before - spin(&self.places[k], &self.rows[k])) / member.inverse_mass;
+        }
+    }
+}
+
+impl ConstraintGroup for ShapeMatching {
+    fn name(&self) -> &str {
+        "shape_matching"
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::NEIGHBORS | Needs::ROWS | Needs::VELOCITY_PASS
+    }
+
+    fn begin_substep(&mut self, now: Substep<'_>) {
+        self.taken.fill(0.0);
+        for (rows, member) in self.rows.iter_mut().zip(&self.members) {
+            rows.clear();
+            rows.extend(member.ids().filter_map(|id| now.rows.row(id)));
+        }
+    }
+
+    fn project(&mut self, now: Substep<'_>, out: &mut Corrections) {
+        self.place_all(now);
+        self.fit_all();
+        self.find_touches(now);
+        for _ in 0..ROUNDS {
+            self.part(now, out);
+            self.draw_back(now);
+        }
+        for (k, member) in self.members.iter().enumerate().filter(|(_, member)| member.is_matched()) {
+            for (&row, place) in self.rows[k].iter().zip(&self.places[k]) {
+                let moved = *place - wide(now.particles.positions()[row as usize]);
+                // A body that is moved by a script has no member here that may move.
+                debug_assert!(member.inverse_mass > 0.0);
+                out.add(row as usize, vector(moved));
+            }
+        }
+    }
+
+    /// Gives back the spin that the fits took.
+    fn finish_velocities(&mut self, now: Substep<'_>, velocities: &mut [Vector]) {
+        for (k, member) in self.members.iter().enumerate().filter(|(_, member)| member.is_matched()) {
+            let rows = &self.rows[k];
+            let place = |row: u32| wide(now.particles.positions()[row as usize]);
+            let center = rows.iter().map(|&row| place(row)).sum::<Vector64>() / rows.len().max(1) as f64;
+            let inertia: f64 = rows.iter().map(|&row| (place(row) - center).length_squared()).sum();
+            if inertia > 0.0 {
+                let spin = self.taken[k] * member.inverse_mass / (inertia * f64::from(now.dt));
+                for &row in rows {
+                    velocities[row as usize] += vector((place(row) - center).perp() * spin);
+                }
+            }
+        }
+    }
+}
+
+/// Radius at which samples and walls touch [m].
+fn radius(spacing: f64) -> Real {
+    (0.5 * spacing) as Real
+}
