@@ -31,7 +31,8 @@ const MUTUAL: [(&str, &str); 4] =
 const SIDEWAYS: [(&str, &str); 1] = [("build", "edit")];
 
 /// Kinds of constraint: a file or folder each, and none names another.
-const CONSTRAINTS: [&str; 6] = ["adhesion", "batch", "contact", "density", "distance", "mass_density"];
+const CONSTRAINTS: [&str; 7] =
+    ["adhesion", "batch", "contact", "density", "distance", "mass_density", "shape_matching"];
 
 fn core() -> PathBuf {
     repository().join("crates/unipbd-core/src")

@@ -204,7 +204,7 @@ fn rigid_bodies(scene: &Scene, particles: &mut Particles) -> Option<RigidBodies>
         let material = scene.materials().count() as MaterialIndex - 1;
         for body in 0..bodies.len() as u32 {
             let view = &bodies.views()[body as usize];
-            let matched = bodies.stiffness(body as usize).is_some();
+            let matched = bodies.elasticity(body as usize).is_some();
             let inverse_mass = if matched { real(view.samples.len() as f64 / view.mass) } else { 0.0 };
             for &sample in bodies.samples(body) {
                 let place = bodies.pose(body).apply(sample);

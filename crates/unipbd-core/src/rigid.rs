@@ -173,7 +173,7 @@ impl RigidBodies {
     /// Visits the samples and what is tied to bodies.
     fn each_follower(&self, rows: &RowIndex, mut visit: impl FnMut(u32, Vector64, usize)) {
         self.each_sample(rows, |body, place, row| {
-            if self.bodies.stiffness(body as usize).is_none() {
+            if self.bodies.elasticity(body as usize).is_none() {
                 visit(body, place, row);
             }
         });
@@ -197,7 +197,7 @@ impl RigidBodies {
     /// Whether the sample of this id may sleep: its body is not moved by a script.
     pub(crate) fn may_rest(&self, id: u32) -> bool {
         let body = self.first_sample.partition_point(|&first| first <= id) - 1;
-        let matched = self.bodies.stiffness(body).is_some();
+        let matched = self.bodies.elasticity(body).is_some();
         !matched && (self.bodies.is_dynamic(body) || !self.bodies.is_active(body))
     }
 

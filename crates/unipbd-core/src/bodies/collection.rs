@@ -1,6 +1,6 @@
 //! All bodies of a run: state as columns, everything else as it was specified.
 
-use super::{Body, BodyKind, BodySpec, MassSpec, Motion, Pose, Rotation, Twist};
+use super::{Body, BodyKind, BodySpec, Elasticity, MassSpec, Motion, Pose, Rotation, Twist};
 use crate::math::Vector64;
 use crate::shapes::{Core, Shape, ShapeError};
 use std::f64::consts::{PI, TAU};
@@ -41,8 +41,8 @@ pub struct Bodies {
     /// The same, and 0 while asleep.
     pub(crate) responses: Vec<Response>,
     pub(crate) asleep: Vec<bool>,
-    /// Stiffness of those that are particles, drawn back to their shape: their pose only follows.
-    matched: Vec<Option<f64>>,
+    /// How those deform that are particles, drawn back to their shape: their pose only follows.
+    matched: Vec<Option<Elasticity>>,
     /// Contacts and joints: sum of impulses since the frame began [N s], [N m s].
     pub(crate) contact_loads: Vec<Twist>,
     fluid_loads: Vec<Twist>,
@@ -191,8 +191,8 @@ impl Bodies {
         self.views[id].kind == BodyKind::Dynamic && self.matched[id].is_none()
     }
 
-    /// Stiffness of a body whose shape is matched.
-    pub(crate) fn stiffness(&self, id: usize) -> Option<f64> {
+    /// How a body deforms whose shape is matched.
+    pub(crate) fn elasticity(&self, id: usize) -> Option<Elasticity> {
         self.matched[id]
     }
 

@@ -6,7 +6,7 @@ mod specification;
 
 pub use collection::{Bodies, Response};
 pub use motion::{Motion, Repeat, Waypoint};
-pub use specification::{BodySpec, CollisionFilter, MassSpec, Rotation, Surface};
+pub use specification::{BodySpec, CollisionFilter, Elasticity, MassSpec, Rotation, Surface};
 
 use crate::math::Vector64;
 

@@ -77,6 +77,15 @@ pub enum MassSpec {
     Mass(f64),
 }
 
+/// How a body whose shape is matched deforms.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Elasticity {
+    /// Part of its deformation that it takes back in a 60th of a second, 0 to 1.
+    pub stiffness: f64,
+    /// Part of its wobble that it loses in a 60th of a second, 0 to 1.
+    pub damping: f64,
+}
+
 /// Whether a dynamic body may turn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Rotation {
@@ -108,8 +117,8 @@ pub struct BodySpec {
     pub filter: CollisionFilter,
     /// Whether it may turn.
     pub rotation: Rotation,
-    /// Stiffness of a dynamic body whose shape is matched, 0 to 1; none for a rigid pose.
-    pub matched: Option<f64>,
+    /// How a dynamic body whose shape is matched deforms; none for a rigid pose.
+    pub matched: Option<Elasticity>,
     /// Factor on gravity.
     pub gravity_factor: f64,
     /// Script of a kinematic body, for the origin of its outline.

@@ -2,7 +2,7 @@
 
 use super::carve::Solid;
 use crate::bodies::{
-    Bodies, BodySpec, CollisionFilter, MassSpec, Motion, Pose, Repeat, Rotation, Surface, Twist, Waypoint,
+    Bodies, BodySpec, CollisionFilter, Elasticity, MassSpec, Motion, Pose, Repeat, Rotation, Surface, Twist, Waypoint,
 };
 use crate::constraints::contact::{ContactSettings, Contacts, DistanceRule, Joint, JointKind, Motor};
 use crate::math::Vector64;
@@ -87,7 +87,8 @@ fn specification(description: &BodyDescription, name: String, position: Vector64
             RotationRule::Free => Rotation::Free,
             RotationRule::Locked => Rotation::Locked,
         },
-        matched: (description.solver == BodySolver::ShapeMatching).then_some(description.stiffness),
+        matched: (description.solver == BodySolver::ShapeMatching)
+            .then_some(Elasticity { stiffness: description.stiffness, damping: description.damping }),
         gravity_factor: description.gravity_factor,
         motion: description.motion.as_ref().map_or(Motion::Still, motion),
     }

@@ -86,7 +86,7 @@ impl RigidBodies {
         dt: f64,
     ) -> bool {
         let (from, to) = (wide(start), wide(particles.position[row as usize]));
-        if self.bodies.stiffness(body as usize).is_some() || !self.comes_near(body, from, to) {
+        if self.bodies.elasticity(body as usize).is_some() || !self.comes_near(body, from, to) {
             return false;
         }
         let (mut from, to) = (self.on_body(body, from, End::Start), self.on_body(body, to, End::Predicted));
@@ -164,7 +164,7 @@ impl RigidBodies {
         found.clear();
         let periodic = neighbors.periodic();
         self.each_sample(rows, |body, _, sample| {
-            if sample >= particles.awake() || self.bodies.stiffness(body as usize).is_some() {
+            if sample >= particles.awake() || self.bodies.elasticity(body as usize).is_some() {
                 return;
             }
             let (fixed, near) = (self.is_fixed(body), self.near[body as usize]);

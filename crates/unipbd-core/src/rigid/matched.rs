@@ -24,7 +24,7 @@ pub(super) struct Matched {
 impl RigidBodies {
     pub(super) fn list_matched(&mut self, spacing: f64) {
         for (id, view) in self.bodies.views().iter().enumerate() {
-            if self.bodies.stiffness(id).is_some() {
+            if self.bodies.elasticity(id).is_some() {
                 let outline = divided(&view.outline, PIECE * spacing);
                 self.matched.push(Matched { body: id as u32, outline, reach: 1.5 * spacing });
             }
@@ -45,8 +45,8 @@ impl RigidBodies {
                 Shape::Polygon(view.outline.clone())
             };
             let mass = if view.kind == BodyKind::Dynamic { view.mass } else { f64::INFINITY };
-            let (first, stiffness) = (self.first_sample[id], self.bodies.stiffness(id));
-            Member::new(first, view.samples.clone(), &shape, mass, stiffness, view.surface, view.filter)
+            let (first, elasticity) = (self.first_sample[id], self.bodies.elasticity(id));
+            Member::new(first, view.samples.clone(), &shape, mass, elasticity, view.surface, view.filter)
         };
         self.bodies.views().iter().enumerate().map(member).collect()
     }
@@ -71,7 +71,7 @@ impl RigidBodies {
             }
             let pose = Pose { position: center, angle: turned.to_angle() };
             let angular = if inertia > 0.0 { spin / inertia } else { 0.0 };
-            let soft = self.bodies.stiffness(id).is_some_and(|stiffness| stiffness < 1.0);
+            let soft = self.bodies.elasticity(id).is_some_and(|how| how.stiffness < 1.0);
             let outline = soft.then(|| matched.deformed(&places, rest, pose));
             self.bodies.follow(id, pose, Twist { linear, angular }, outline);
         }
@@ -79,7 +79,7 @@ impl RigidBodies {
 
     /// Gives the samples of bodies that are particles the velocities of their bodies.
     pub(crate) fn stir_particles(&self, bodies: &[(u32, Twist)], particles: &mut Particles, rows: &RowIndex) {
-        for &(body, velocity) in bodies.iter().filter(|(body, _)| self.bodies.stiffness(*body as usize).is_some()) {
+        for &(body, velocity) in bodies.iter().filter(|(body, _)| self.bodies.elasticity(*body as usize).is_some()) {
             let center = self.bodies.pose(body).position;
             let ids = self.first_sample[body as usize]..self.first_sample[body as usize + 1];
             for row in ids.filter_map(|id| rows.row(id)).map(|row| row as usize) {

@@ -20,6 +20,9 @@ pub struct BodyDescription {
     /// 1 is rigid.
     #[serde(default = "one")]
     pub stiffness: f64,
+    /// Part of its wobble that such a body loses in a 60th of a second, 0 to 1.
+    #[serde(default = "tenth")]
+    pub damping: f64,
     /// Radius of a disc [m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
@@ -223,6 +226,10 @@ fn dynamic() -> BodyKind {
 
 fn water_density() -> f64 {
     1000.0
+}
+
+fn tenth() -> f64 {
+    0.1
 }
 
 fn half() -> f64 {

@@ -70,6 +70,7 @@ impl BodyDescription {
             kind: BodyKind::Dynamic,
             solver: BodySolver::Pose,
             stiffness: 1.0,
+            damping: 0.1,
             radius: None,
             size: None,
             outline: None,

@@ -99,7 +99,7 @@ impl World {
         let gravity = wide(self.parts.gravity);
         let bodies = self.parts.rigid.as_ref().map_or(&[][..], |rigid| rigid.views());
         // Bodies that are particles were counted with them.
-        let posed = |id: usize| self.parts.rigid.as_ref().is_none_or(|rigid| rigid.bodies.stiffness(id).is_none());
+        let posed = |id: usize| self.parts.rigid.as_ref().is_none_or(|rigid| rigid.bodies.elasticity(id).is_none());
         let moving = bodies.iter().enumerate().filter(|(id, body)| body.kind == BodyKind::Dynamic && posed(*id));
         moving.fold(Sums::default(), |sums, (_, body)| {
             let (x, v, spin) = (body.position, body.velocity, body.angular_velocity);

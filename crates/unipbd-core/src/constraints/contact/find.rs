@@ -332,7 +332,7 @@ fn may_touch(pieces: &Pieces, excluded: &[(u32, u32)], bodies: &Bodies, a: u32, 
     let piece = &pieces.all[a as usize];
     let dynamic = |body: u32| body != NONE && bodies.is_dynamic(body as usize);
     let Some(other) = pieces.all.get(b as usize) else { return dynamic(piece.body) };
-    let matched = |body: u32| body != NONE && bodies.stiffness(body as usize).is_some();
+    let matched = |body: u32| body != NONE && bodies.elasticity(body as usize).is_some();
     piece.body != other.body
         && !matched(piece.body)
         && !matched(other.body)

@@ -127,17 +127,31 @@ impl ShapeMatching {
             .zip(&depths)
             .map(|(touch, &depth)| if depth > 0.0 { self.push(touch, depth, &counts, now) } else { Vector64::ZERO })
             .collect();
-        for (touch, &push) in self.touches.iter().zip(&pushes) {
+        for (k, &push) in pushes.iter().enumerate() {
+            let touch = self.touches[k];
             self.places[touch.a.0][touch.a.1] += push * self.members[touch.a.0].inverse_mass;
             match touch.b {
                 Some((member, sample)) if self.members[member].is_matched() => {
                     self.places[member][sample] -= push * self.members[member].inverse_mass;
                 }
-                Some((member, sample)) => out.loads_mut()[self.rows[member][sample] as usize] -= vector(push),
+                Some((member, sample)) => {
+                    out.loads_mut()[self.rows[member][sample] as usize] -= vector(push);
+                    self.shift_whole((member, sample), -push);
+                }
                 None => {
                     touch.wall.into_iter().for_each(|wall| out.wall_loads_mut()[usize::from(wall)] -= push);
                 }
             }
+        }
+    }
+
+    /// Moves all samples of a body that has a pose as a push on one of them will move it.
+    fn shift_whole(&mut self, (m, k): Sample, push: Vector64) {
+        let (member, center) = (&self.members[m], self.fits[m].center);
+        let linear = push * (member.inverse_mass / self.rows[m].len() as f64);
+        let angular = (self.places[m][k] - center).perp_dot(push) * member.inverse_mass / member.spread;
+        if member.inverse_mass > 0.0 {
+            self.places[m].iter_mut().for_each(|place| *place += linear + (*place - center).perp() * angular);
         }
     }
 

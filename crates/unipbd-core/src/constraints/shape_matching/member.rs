@@ -1,6 +1,6 @@
 //! One body as particles, and the best rigid fit of its shape.
 
-use crate::bodies::{CollisionFilter, Surface};
+use crate::bodies::{CollisionFilter, Elasticity, Surface};
 use crate::math::Vector64;
 use crate::shapes::{Nearest, Shape};
 use std::ops::Range;
@@ -22,6 +22,8 @@ pub struct Member {
     pub(super) spread: f64,
     /// Part of its deformation that it takes back in a 60th of a second; none where a pose moves it.
     stiffness: Option<f64>,
+    /// Part of its wobble that it loses in a 60th of a second.
+    damping: f64,
     pub(super) surface: Surface,
     pub(super) filter: CollisionFilter,
 }
@@ -42,14 +44,15 @@ impl Member {
         rest: Vec<Vector64>,
         shape: &Shape,
         mass: f64,
-        stiffness: Option<f64>,
+        elasticity: Option<Elasticity>,
         surface: Surface,
         filter: CollisionFilter,
     ) -> Member {
         let distances = rest.iter().map(|&sample| shape.nearest(sample)).collect();
         let inverse_mass = rest.len() as f64 / mass;
+        let (stiffness, damping) = (elasticity.map(|how| how.stiffness), elasticity.map_or(0.0, |how| how.damping));
         let spread = rest.iter().map(|r| r.length_squared()).sum::<f64>().max(f64::MIN_POSITIVE);
-        Member { first, rest, distances, spread, inverse_mass, stiffness, surface, filter }
+        Member { first, rest, damping, distances, spread, inverse_mass, stiffness, surface, filter }
     }
 
     pub(super) fn ids(&self) -> Range<u32> {
@@ -76,6 +79,11 @@ impl Member {
     pub(super) fn part(&self, dt: f64) -> f64 {
         let stiffness = self.stiffness.unwrap_or(1.0);
         1.0 - (1.0 - stiffness).powf(dt / STIFFNESS_TIME / super::ROUNDS as f64)
+    }
+
+    /// Part of its wobble that it loses in a substep of this length [s].
+    pub(super) fn damped(&self, dt: f64) -> f64 {
+        1.0 - (1.0 - self.damping).powf(dt / STIFFNESS_TIME)
     }
 
     /// Moves the samples towards the fit, as far as the stiffness goes in a substep of this length [s].

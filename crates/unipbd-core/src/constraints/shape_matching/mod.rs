@@ -112,17 +112,27 @@ impl ConstraintGroup for ShapeMatching {
         }
     }
 
-    /// Gives back the spin that the fits took.
+    /// Gives back the spin that the fits took, and damps what moves against the body as a whole.
     fn finish_velocities(&mut self, now: Substep<'_>, velocities: &mut [Vector]) {
         for (k, member) in self.members.iter().enumerate().filter(|(_, member)| member.is_matched()) {
-            let rows = &self.rows[k];
+            let (rows, dt) = (&self.rows[k], f64::from(now.dt));
             let place = |row: u32| wide(now.particles.positions()[row as usize]);
-            let center = rows.iter().map(|&row| place(row)).sum::<Vector64>() / rows.len().max(1) as f64;
-            let inertia: f64 = rows.iter().map(|&row| (place(row) - center).length_squared()).sum();
+            let count = rows.len().max(1) as f64;
+            let center = rows.iter().map(|&row| place(row)).sum::<Vector64>() / count;
+            let mean = rows.iter().map(|&row| wide(velocities[row as usize])).sum::<Vector64>() / count;
+            let (mut inertia, mut spin) = (0.0, 0.0);
+            for &row in rows {
+                let arm = place(row) - center;
+                inertia += arm.length_squared();
+                spin += arm.perp_dot(wide(velocities[row as usize]));
+            }
             if inertia > 0.0 {
-                let spin = self.taken[k] * member.inverse_mass / (inertia * f64::from(now.dt));
+                let given = self.taken[k] * member.inverse_mass / (inertia * dt);
+                let (whole, part) = (spin / inertia, member.damped(dt));
                 for &row in rows {
-                    velocities[row as usize] += vector((place(row) - center).perp() * spin);
+                    let (arm, velocity) = ((place(row) - center).perp(), &mut velocities[row as usize]);
+                    let wobble = wide(*velocity) - mean - arm * whole;
+                    *velocity += vector(arm * given - wobble * part);
                 }
             }
         }

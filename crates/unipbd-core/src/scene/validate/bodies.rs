@@ -110,6 +110,8 @@ fn check_surface(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) 
 fn check_solver(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {
     let hint = "the part of its deformation that it takes back in a 60th of a second: 1 is rigid";
     checker.range(path.then("stiffness"), body.stiffness, Allowed::Between(0.0, 1.0), hint);
+    let hint = "the part of its wobble that it loses in a 60th of a second: 0 wobbles on, 1 creeps";
+    checker.range(path.then("damping"), body.damping, Allowed::Between(0.0, 1.0), hint);
     if body.solver == BodySolver::Pose {
         if body.stiffness != 1.0 {
             let hint = "add solver = \"shape_matching\", or leave it out";
