@@ -26,7 +26,7 @@ moments() {
         rope) echo 0.5 6.0 ;;
         seed_*) echo 1.0 5.0 ;;
         smoke_ring_obstacle) echo 0.6 2.0 ;;
-        soft_bodies) echo 0.6 6.0 ;;
+        soft_bodies) echo 0.65 6.0 ;;
         everything) echo 0.7 4.0 ;;
         *) echo 1.0 ;;
     esac
