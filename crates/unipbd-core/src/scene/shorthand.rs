@@ -1,8 +1,6 @@
 //! Short ways to write scenes in Rust.
 
-use super::{
-    Block, BodyDescription, BodySolver, HalfPlane, Liquid, Obstacle, RotationRule, Side, Slip, Smoke, Tank,
-};
+use super::{Block, BodyDescription, BodySolver, HalfPlane, Liquid, Obstacle, RotationRule, Side, Slip, Smoke, Tank};
 use crate::bodies::BodyKind;
 
 impl Liquid {

@@ -208,6 +208,6 @@ mod tests {
         let inside = |k: usize| walls.coverage(points[k], &coverage).0;
         assert!((0..1000).all(|k| !far(k) || inside(k) == 0.0));
         assert!((0..1000).filter(|&k| far(k)).count() > 50);
-        assert!((0..1000).all(|k| (distances[k] < 0.0) == walls.hits(points[k]).next().is_some()));
+        assert!((0..1000).all(|k| (distances[k] < 0.0) == walls.hits(points[k], points[k]).next().is_some()));
     }
 }
