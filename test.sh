@@ -48,9 +48,9 @@ logs() {
 part format cargo fmt --all --check
 part lints cargo clippy --workspace --all-targets --quiet -- -D warnings
 part documentation env RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
-part "Rust tests" cargo test --workspace
+part "Rust tests" cargo test --workspace --no-fail-fast
 if [ -n "$full" ]; then
-    part "long Rust tests" cargo test --workspace --release -- --include-ignored
+    part "long Rust tests" cargo test --workspace --no-fail-fast --release -- --include-ignored
 fi
 if command -v python3 >/dev/null; then
     part logs logs

@@ -3,7 +3,7 @@
 use unipbd_core::scene::{GradientPoint, Scene, SolverSettings, Substeps};
 use unipbd_validation::report::{Entry, sheet};
 use unipbd_validation::stress::map::MAPS;
-use unipbd_validation::stress::{Ending, NAMED, endure_random, fuzz};
+use unipbd_validation::stress::{Ending, NAMED, endure_random, fuzz, quiet};
 use unipbd_validation::{cases, precision, report};
 
 /// Runs a case at its quick size; fails with all figures that miss their bands.
@@ -136,6 +136,13 @@ fn scenes_that_once_broke_end_sound_or_stop() {
         println!("{}: {ending:?}", file.display());
         assert!(ending.is_good() && ending != Ending::Refused, "{}: {ending:?}", file.display());
     }
+}
+
+#[test]
+fn a_quiet_pool_stays_what_it_is() {
+    let quiet = quiet(20_000).expect("it does not diverge");
+    println!("{quiet:?}");
+    assert!(quiet.is_good(), "{quiet:?}");
 }
 
 #[test]

@@ -80,8 +80,10 @@ impl Effect for Cohesion {
             }
             let mut sum = Vector::ZERO;
             now.neighbors.for_each(i, |j| {
-                if materials[j] == materials[i] && inverse_masses[j] > 0.0 {
-                    let apart = periodic.min_image(positions[i] - positions[j]);
+                let apart = periodic.min_image(positions[i] - positions[j]);
+                // The list holds pairs beyond the kernel too, and the difference of normals does not end there.
+                let near = apart.length_squared() < radius * radius;
+                if near && materials[j] == materials[i] && inverse_masses[j] > 0.0 {
                     let density = (2.0 + errors[i] + errors[j]).max(0.5);
                     let pull = apart.normalize_or_zero() * spline(apart.length() / radius) + normal[i] - normal[j];
                     sum += pull * (2.0 / density);

@@ -5,10 +5,12 @@ pub mod chart;
 mod fuzz;
 pub mod map;
 mod named;
+mod quiet;
 mod shrink;
 
 pub use fuzz::{Counts, accountable_speed, endure_random, fuzz, random_scene, summary};
 pub use named::{NAMED, Stress};
+pub use quiet::{Quiet, quiet};
 pub use shrink::shrink;
 
 use unipbd_core::scene::Scene;
