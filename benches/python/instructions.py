@@ -38,16 +38,17 @@ UNUSED = {
 }
 
 
-def count(scene: str, frames: int) -> Counter:
+def count(scene: str, frames: int) -> "Counter[str]":
     """Instructions by source file."""
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "out"
-        run = [PROGRAM, ROOT / scene, "--no-record", "--threads", "1", "--fps", "60", "--duration", str(frames / 60), "--json"]
+        scene_options = ["--fps", "60", "--duration", str(frames / 60)]
+        run = [str(PROGRAM), str(ROOT / scene), "--no-record", "--threads", "1", "--json", *scene_options]
         grind = ["valgrind", "--tool=callgrind", f"--callgrind-out-file={out}"]
         subprocess.run(grind + run, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        annotate = ["callgrind_annotate", "--threshold=100", "--auto=no", out]
+        annotate = ["callgrind_annotate", "--threshold=100", "--auto=no", str(out)]
         text = subprocess.run(annotate, check=True, capture_output=True, text=True).stdout
-    counts = Counter()
+    counts: Counter[str] = Counter()
     for line in text.splitlines():
         found = re.match(r"^\s*([\d,]+) \([ \d.]+%\)\s+(\S+?):", line)
         if found:

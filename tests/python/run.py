@@ -65,7 +65,7 @@ def main() -> None:
     if not arguments.no_types:
         run(python, "-m", "mypy.stubtest", "unipbd", "--allowlist", STUBTEST_KNOWN, "--ignore-unused-allowlist", cwd=PACKAGE)
         scripts = sorted(EXAMPLES.glob("*.py"))
-        for part in ([PACKAGE / "python" / "unipbd"], scripts, [ROOT / "benches" / "python" / "figures.py"]):
+        for part in ([PACKAGE / "python" / "unipbd"], scripts, sorted((ROOT / "benches" / "python").glob("*.py"))):
             run(python, "-m", "mypy", "--strict", *part, environment={"MYPYPATH": str(PACKAGE / "python")})
 
 
