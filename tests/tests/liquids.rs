@@ -112,9 +112,9 @@ fn automatic_substeps_hold_the_compression_at_any_depth() {
         bars("column with automatic substeps, 10 s", |bars| {
             let name = |what: &str| format!("{depth} deep, n = {}: {what}", rest.substeps);
             bars.at_most(&name("C_max"), rest.compression, 0.013);
-            // The surface settles by a fifth of a spacing, however deep the water: where the kernel reaches
-            // beyond it, the topmost rows close up.
-            let surface = if depth < 30 { 0.2 / f64::from(depth) } else { 0.012 };
+            // A wall pushes with one multiplier where two particles push with two, so the lowest row stands
+            // nearer to the floor, however deep the water: it counts where there are few rows.
+            let surface = if depth < 30 { 0.23 / f64::from(depth) } else { 0.012 };
             bars.within(&name("height"), rest.height / (0.1 * f64::from(depth)), 1.0 - surface, 1.0 + 0.012);
         });
     }

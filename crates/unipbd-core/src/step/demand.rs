@@ -128,12 +128,21 @@ impl World {
         (sum, self.parts.parallelism.sum(particles.dense(), |row| f64::from(u8::from(counts(row)))))
     }
 
-    /// Density of the heaviest liquid over that of the lightest: a light liquid carries a heavy one.
+    /// Density of the heaviest liquid in the scene over that of the lightest: a light liquid carries a heavy one.
     fn density_ratio(&self) -> f64 {
-        let liquids = self.parts.materials.iter().filter(|material| material.phase == Phase::Liquid);
-        let (light, heavy) = liquids.fold((f64::INFINITY, 0.0_f64), |(light, heavy), liquid| {
-            (light.min(liquid.density), heavy.max(liquid.density))
-        });
+        let is_there = |index: usize| {
+            let particles = &self.parts.particles;
+            particles.material[..particles.dense()].iter().any(|&material| usize::from(material) == index)
+        };
+        let materials = self.parts.materials.iter().enumerate();
+        let liquids = materials.filter(|(_, material)| material.phase == Phase::Liquid);
+        let (mut light, mut heavy) = (f64::INFINITY, 0.0_f64);
+        for (index, liquid) in liquids {
+            // Only one that would change the ratio is looked for.
+            if (liquid.density < light || liquid.density > heavy) && is_there(index) {
+                (light, heavy) = (light.min(liquid.density), heavy.max(liquid.density));
+            }
+        }
         if heavy > 0.0 { heavy / light } else { 1.0 }
     }
 }

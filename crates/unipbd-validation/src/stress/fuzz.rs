@@ -129,7 +129,8 @@ pub fn random_scene(seed: u64) -> Scene {
 pub fn accountable_speed(scene: &Scene) -> f64 {
     let frame = scene.spacing * scene.fps;
     let height = scene.tank.iter().map(|tank| tank.max[1] - tank.min[1]).fold(0.0, f64::max);
-    let speed = scene.block.iter().map(|block| block.velocity[0].hypot(block.velocity[1])).fold(0.0, f64::max);
+    let thrown = scene.block.iter().map(|block| block.velocity[0].hypot(block.velocity[1]));
+    let speed = thrown.chain(scene.emitter.iter().map(|emitter| emitter.speed)).fold(0.0, f64::max);
     let fall = (2.0 * 9.81 * height).sqrt();
     // Hot gas rises, light liquid under heavy squirts, a start that overlaps a little flies apart. What is
     // caught between a heavy liquid and a wall leaves as fast as Bernoulli lets it: sqrt(2 p/rho).
