@@ -27,7 +27,7 @@ fn main() {
     println!("{}", stage_table(&measured));
     println!("## Sleep\n\n{}", sleep_line());
     println!("\nLoad of the machine while this was written, 1 and 5 minutes: {}.", load());
-    println!("\n## Peers\n\nSee [peers.md](peers.md), written by `benches/peers.sh`.");
+    println!("\n## Elsewhere\n\n{ELSEWHERE}");
 }
 
 fn load() -> String {
@@ -54,6 +54,12 @@ hand. Everything in a table is measured in turn in one run, so that a slow momen
 all of it: trust the ratios, not the nanoseconds. Speed-ups by threads mean nothing while others use the
 machine. The bars are what the project asks of itself; figures below them are not met.
 ";
+
+const ELSEWHERE: &str = "\
+- Other solvers in one run: [peers.md](peers.md), by `benches/peers.sh`.
+- Instructions of a frame by part of the library, those that a scene does not use among them:
+  `python benches/python/instructions.py` (needs valgrind).
+- What a log of 60 frames per second costs: `python benches/python/recording.py`.";
 
 const PASSES: &str = "\
 A lattice with random shifts, h = 2 dx. \"Scalar\" is a plain loop over vectors and a compressed list of
