@@ -61,7 +61,6 @@ fn liquids_table(case: &Case, bars: &mut Vec<(String, f64)>) {
     let dt = (0.1 * case.dx).min(0.002);
     let mut peers = vec![
         python::peer(case, "splishsplash.py", "dfsph:0.1").map_err(|why| format!("SPlisHSPlasH DFSPH: skipped, {why}")),
-        python::peer(case, "splishsplash.py", "dfsph:1").map_err(|why| format!("SPlisHSPlasH DFSPH: skipped, {why}")),
         Ok(liquids::salva(case, 0.001, dt)),
         Ok(liquids::salva(case, 0.01, dt)),
         Ok(liquids::salva(case, 0.05, dt)),
