@@ -132,11 +132,12 @@ pub fn accountable_speed(scene: &Scene) -> f64 {
     let thrown = scene.block.iter().map(|block| block.velocity[0].hypot(block.velocity[1]));
     let speed = thrown.chain(scene.emitter.iter().map(|emitter| emitter.speed)).fold(0.0, f64::max);
     let fall = (2.0 * 9.81 * height).sqrt();
-    // Hot gas rises, light liquid under heavy squirts, a start that overlaps a little flies apart. What is
-    // caught between a heavy liquid and a wall leaves as fast as Bernoulli lets it: sqrt(2 p/rho).
+    // Hot gas rises, a start that overlaps a little flies apart. What is light and caught between a heavy
+    // liquid and a wall leaves as fast as Bernoulli lets it, sqrt(2 p/rho), with p the heavy one's weight
+    // and its impact.
     let densities = || scene.materials().map(|material| material.density()).filter(|density| *density > 0.0);
     let ratio = densities().fold(0.0, f64::max) / densities().fold(f64::INFINITY, f64::min);
-    let squirt = if ratio.is_finite() { 2.0 * ratio.sqrt() * speed } else { 0.0 };
+    let squirt = if ratio.is_finite() { ratio.sqrt() * (fall + 2.0 * speed) } else { 0.0 };
     6.0 * fall + 3.0 * speed + 6.0 * frame + squirt
 }
 
