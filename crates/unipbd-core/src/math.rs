@@ -34,6 +34,18 @@ pub fn vector(value: Vector64) -> Vector {
     Vector::new(value.x as Real, value.y as Real)
 }
 
+/// The larger one; `b` where `a` is not a number. (`Real::max` minds either, at three times the cost.)
+#[inline(always)]
+pub fn larger(a: Real, b: Real) -> Real {
+    if a > b { a } else { b }
+}
+
+/// The smaller one; `b` where `a` is not a number.
+#[inline(always)]
+pub fn smaller(a: Real, b: Real) -> Real {
+    if a < b { a } else { b }
+}
+
 /// Widens a particle vector to double precision.
 #[inline]
 pub fn wide(value: Vector) -> Vector64 {

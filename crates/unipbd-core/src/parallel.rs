@@ -3,7 +3,7 @@
 //! Outputs are written in fixed chunks, and reductions follow a fixed binary tree of chunks, so
 //! that even floating-point sums come out the same on any number of threads.
 
-use crate::math::Real;
+use crate::math::{Real, larger};
 use rayon::prelude::*;
 use std::ops::Range;
 
@@ -122,8 +122,8 @@ impl Parallelism {
 
     /// Largest `value(row)`, or negative infinity without rows. NaN is passed over.
     pub fn max(self, rows: usize, value: impl Fn(usize) -> Real + Sync) -> Real {
-        let larger = |a: Real, b: Real| if b > a { b } else { a };
-        self.reduce(rows, |range| range.map(&value).fold(Real::NEG_INFINITY, larger), larger)
+        let of_chunk = |rows: Range<usize>| rows.map(&value).fold(Real::NEG_INFINITY, |most, next| larger(next, most));
+        self.reduce(rows, of_chunk, larger)
     }
 
     /// Sum of `value(row)` in double precision, in an order that depends on nothing but `rows`.

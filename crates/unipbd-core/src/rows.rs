@@ -1,5 +1,7 @@
 //! Where a particle stands now, by its id.
 
+use crate::bytes::held;
+
 /// Rows by id. Ids are given in ascending order and never reused, so the index is a window that
 /// moves along with the living ids.
 #[derive(Clone, Debug, Default)]
@@ -31,7 +33,7 @@ impl RowIndex {
 
     /// Memory held [bytes].
     pub(crate) fn memory_bytes(&self) -> usize {
-        self.rows.capacity() * size_of::<u32>()
+        held(&self.rows)
     }
 }
 

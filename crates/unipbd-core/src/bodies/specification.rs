@@ -33,6 +33,13 @@ impl Surface {
         Surface { restitution, ..self }
     }
 
+    /// What friction holds back of a sliding that the impulse `stop` would end, under this normal impulse
+    /// (Macklin et al. 2014, equation 24).
+    pub fn held_back(&self, stop: f64, normal: f64) -> f64 {
+        let (sticks, drag) = (self.static_friction * normal, self.kinetic_friction * normal);
+        if stop.abs() < sticks { stop } else { stop.clamp(-drag, drag) }
+    }
+
     /// What holds between two surfaces: the geometric mean of the friction coefficients (one smooth
     /// side makes a smooth contact), the larger restitution, the larger rolling friction.
     pub fn combined(&self, other: &Surface) -> Surface {

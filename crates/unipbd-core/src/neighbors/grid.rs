@@ -4,6 +4,7 @@ use super::cells::{Cells, Span};
 use super::order::{CountingSort, Extent};
 use super::periodic::Periodic;
 use super::sparse::SparseIndex;
+use crate::bytes::held;
 use crate::math::{Real, Vector};
 use crate::parallel::Parallelism;
 use std::ops::Range;
@@ -228,12 +229,10 @@ impl Grid {
     /// Memory held [bytes].
     pub fn memory_bytes(&self) -> usize {
         let table = match &self.index {
-            Index::Dense { ends, .. } => ends.capacity(),
+            Index::Dense { ends, .. } => held(ends),
             Index::Sparse => 0,
         };
-        (table + self.spare.capacity() + self.order.capacity()) * 4
-            + self.sort.memory_bytes()
-            + self.sparse.memory_bytes()
+        table + held(&self.spare) + held(&self.order) + self.sort.memory_bytes() + self.sparse.memory_bytes()
     }
 }
 

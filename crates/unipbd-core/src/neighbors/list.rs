@@ -7,6 +7,7 @@
 //! particles remain neighbours. The number of columns is even: passes take two at a time. Blocks are kept in chunks that are built and read in parallel.
 
 use super::grid::{Cursor, Grid};
+use crate::bytes::held;
 use crate::math::{Real, Vector};
 use crate::parallel::{CHUNK_ROWS, Parallelism};
 use crate::simd::Level;
@@ -72,11 +73,11 @@ impl Chunk {
     }
 
     fn memory_bytes(&self) -> usize {
-        self.blocks.capacity() * size_of::<Block>()
-            + self.narrow.capacity() * 16
-            + self.wide.capacity() * 32
+        held(&self.blocks)
+            + held(&self.narrow)
+            + held(&self.wide)
             + self.scratch.found.memory_bytes()
-            + self.scratch.runs.capacity() * 8
+            + held(&self.scratch.runs)
     }
 }
 
@@ -199,7 +200,7 @@ impl NeighborList {
 
     /// Memory held [bytes].
     pub fn memory_bytes(&self) -> usize {
-        self.chunks.capacity() * size_of::<Chunk>() + self.chunks.iter().map(Chunk::memory_bytes).sum::<usize>()
+        held(&self.chunks) + self.chunks.iter().map(Chunk::memory_bytes).sum::<usize>()
     }
 }
 

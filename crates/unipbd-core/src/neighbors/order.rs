@@ -2,6 +2,7 @@
 //! depend on how the work is shared.
 
 use super::cells::{Cell, Cells};
+use crate::bytes::held;
 use crate::math::Vector;
 use crate::parallel::{CHUNK_ROWS, Parallelism};
 use std::ops::Range;
@@ -189,6 +190,6 @@ impl CountingSort {
     }
 
     pub fn memory_bytes(&self) -> usize {
-        self.keys.capacity() * 4 + self.key_ranges.capacity() * 8
+        held(&self.keys) + held(&self.key_ranges)
     }
 }

@@ -8,7 +8,8 @@
 use super::Periodic;
 use super::grid::{Cursor, Grid};
 use super::list::NeighborList;
-use crate::math::{Real, Vector};
+use crate::bytes::held;
+use crate::math::{Real, Vector, larger, smaller};
 use crate::parallel::Parallelism;
 use std::ops::Range;
 
@@ -84,8 +85,7 @@ impl Moves<'_> {
                 let mut largest = [0.0; GROUP];
                 self.each_four(rows, |moved| {
                     for (largest, moved) in largest.iter_mut().zip(moved) {
-                        let square = (*moved - bound.drift).length_squared();
-                        *largest = if square > *largest { square } else { *largest };
+                        *largest = larger((*moved - bound.drift).length_squared(), *largest);
                     }
                 });
                 largest.into_iter().fold(0.0, Real::max)
@@ -161,10 +161,10 @@ impl Spread {
     }
 }
 
-/// The smaller of each coordinate. (`Vector::min` also minds what is not a number, at four times the cost.)
+/// The smaller of each coordinate.
 #[inline(always)]
 fn lower(a: Vector, b: Vector) -> Vector {
-    Vector::new(if a.x < b.x { a.x } else { b.x }, if a.y < b.y { a.y } else { b.y })
+    Vector::new(smaller(a.x, b.x), smaller(a.y, b.y))
 }
 
 /// A neighbour list with its reference positions.
@@ -305,6 +305,6 @@ impl SkinList {
 
     /// Memory held [bytes].
     pub fn memory_bytes(&self) -> usize {
-        self.list.memory_bytes() + self.reference.capacity() * size_of::<Vector>()
+        self.list.memory_bytes() + held(&self.reference)
     }
 }

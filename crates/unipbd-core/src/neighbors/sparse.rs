@@ -2,6 +2,7 @@
 
 use super::cells::{Cell, Cells};
 use super::grid::Cursor;
+use crate::bytes::held;
 use crate::math::Vector;
 use crate::parallel::Parallelism;
 use rayon::prelude::*;
@@ -93,6 +94,6 @@ impl SparseIndex {
     }
 
     pub fn memory_bytes(&self) -> usize {
-        self.keys.capacity() * 8 + self.starts.capacity() * 4 + self.pairs.capacity() * 16
+        held(&self.keys) + held(&self.starts) + held(&self.pairs)
     }
 }

@@ -6,6 +6,7 @@ use super::Level;
 use super::shapes::Shape;
 use super::space::Space;
 use super::weigh::{At, Weighed};
+use crate::bytes::held;
 use crate::math::{Real, Vector};
 use crate::neighbors::LANES;
 use std::ops::Range;
@@ -81,7 +82,7 @@ impl Found {
     }
 
     pub fn memory_bytes(&self) -> usize {
-        self.rows.capacity() * 4
+        held(&self.rows)
     }
 }
 

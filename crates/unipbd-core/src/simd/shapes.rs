@@ -2,7 +2,7 @@
 //!
 //! A kernel is a shape times a constant; the constant is applied once per row, not once per pair.
 
-use crate::math::{Real, real};
+use crate::math::{Real, larger, real};
 use std::f64::consts::PI;
 use std::ops::{Add, Div, Mul, Sub};
 
@@ -29,7 +29,7 @@ impl Number for Real {
     }
     #[inline(always)]
     fn larger(self, other: Real) -> Real {
-        if self > other { self } else { other }
+        larger(self, other)
     }
     #[inline(always)]
     fn where_below(self, limit: Real, yes: Real, no: Real) -> Real {

@@ -81,6 +81,24 @@ pub(super) fn entry<T: Copy + Default>(column: &[T], body: u32) -> T {
     column.get(body as usize).copied().unwrap_or_default()
 }
 
+/// What the normal impulses of an iteration come to.
+struct Pressed {
+    /// Displacements of the two bodies before it.
+    a: Twist,
+    b: Twist,
+    normal: [f64; 2],
+}
+
+impl Pressed {
+    fn total(&self) -> f64 {
+        self.normal[0] + self.normal[1]
+    }
+
+    fn turn(&self) -> f64 {
+        self.a.angular - self.b.angular
+    }
+}
+
 impl Contact {
     pub fn new(who: &Touching, normal: Vector64) -> Contact {
         let (points, gains) = ([Point::default(); 2], Gains::default());
@@ -190,25 +208,18 @@ impl Contact {
 
     /// One iteration: no approach beyond the gap, friction inside Coulomb's cone, rolling resistance.
     pub fn solve(&mut self, displacements: &[Twist]) -> Push {
-        let (a, b) = (entry(displacements, self.who.a), entry(displacements, self.who.b));
-        let (points, gains) = (self.points, self.gains);
-        let excess = points.map(|point| self.opening(&point, &a, &b) + point.gap.max(0.0));
-        let old = points.map(|point| point.normal_impulse);
-        let normal = complementarity::solve(&gains.normal, excess, old, [0.0; 2]);
-        let total = normal[0] + normal[1];
+        let old = self.points.map(|point| point.normal_impulse);
+        let pressed = self.press(displacements, old);
         let mut push = Push::default();
         for k in 0..self.count as usize {
-            let cross = gains.cross[k][0] * (normal[0] - old[0]) + gains.cross[k][1] * (normal[1] - old[1]);
-            // Points of one line slide alike: each answers for its share of the load.
-            let share = if total > 0.0 { normal[k] / total } else { 0.0 };
-            let stop = (self.slide(&points[k], &a, &b) + cross) * share / gains.tangent[k];
-            let limit = gains.friction * normal[k];
-            let tangent = (points[k].tangent_impulse - stop).clamp(-limit, limit);
-            self.add_push(&mut push, &points[k], normal[k] - old[k], tangent - points[k].tangent_impulse);
-            (self.points[k].normal_impulse, self.points[k].tangent_impulse) = (normal[k], tangent);
+            let (point, normal) = (self.points[k], pressed.normal[k]);
+            let limit = self.gains.friction * normal;
+            let tangent = (point.tangent_impulse - self.stop(k, &pressed, old)).clamp(-limit, limit);
+            self.add_push(&mut push, &point, normal - old[k], tangent - point.tangent_impulse);
+            (self.points[k].normal_impulse, self.points[k].tangent_impulse) = (normal, tangent);
         }
         if self.who.rolling_arm > 0.0 {
-            self.resist_rolling(a.angular - b.angular, total, &mut push);
+            self.resist_rolling(pressed.turn(), pressed.total(), &mut push);
         }
         push
     }
@@ -216,27 +227,36 @@ impl Contact {
     /// One iteration on the positions alone, as in Macklin et al. 2014: what lies too deep is taken out, and of the
     /// way the bodies slid past each other what friction holds back for this depth (equations 23 to 25).
     pub fn solve_positions(&mut self, displacements: &[Twist]) -> Push {
-        let (a, b) = (entry(displacements, self.who.a), entry(displacements, self.who.b));
-        let (points, gains, surface) = (self.points, self.gains, self.who.surface);
-        let excess = points.map(|point| self.opening(&point, &a, &b) + point.gap.max(0.0));
-        let normal = complementarity::solve(&gains.normal, excess, [0.0; 2], [0.0; 2]);
-        let total = normal[0] + normal[1];
+        let pressed = self.press(displacements, [0.0; 2]);
         let mut push = Push::default();
         for k in 0..self.count as usize {
-            let cross = gains.cross[k][0] * normal[0] + gains.cross[k][1] * normal[1];
-            let share = if total > 0.0 { normal[k] / total } else { 0.0 };
-            let stop = (self.slide(&points[k], &a, &b) + cross) * share / gains.tangent[k];
-            let (sticks, drag) = (surface.static_friction * normal[k], surface.kinetic_friction * normal[k]);
-            let held = if stop.abs() < sticks { stop } else { stop.clamp(-drag, drag) };
-            self.add_push(&mut push, &points[k], normal[k], -held);
-            self.points[k].normal_impulse += normal[k];
+            let normal = pressed.normal[k];
+            let held = self.who.surface.held_back(self.stop(k, &pressed, [0.0; 2]), normal);
+            self.add_push(&mut push, &self.points[k], normal, -held);
+            self.points[k].normal_impulse += normal;
             self.points[k].tangent_impulse -= held;
         }
-        if self.who.rolling_arm > 0.0 && total > 0.0 {
+        if self.who.rolling_arm > 0.0 && pressed.total() > 0.0 {
             self.rolling_impulse = 0.0;
-            self.resist_rolling(a.angular - b.angular, total, &mut push);
+            self.resist_rolling(pressed.turn(), pressed.total(), &mut push);
         }
         push
+    }
+
+    /// The normal impulses that leave no approach beyond the gap, in place of the `old` ones.
+    fn press(&self, displacements: &[Twist], old: [f64; 2]) -> Pressed {
+        let (a, b) = (entry(displacements, self.who.a), entry(displacements, self.who.b));
+        let excess = self.points.map(|point| self.opening(&point, &a, &b) + point.gap.max(0.0));
+        Pressed { a, b, normal: complementarity::solve(&self.gains.normal, excess, old, [0.0; 2]) }
+    }
+
+    /// The tangential impulse that ends the sliding at a point, after the normal ones have acted.
+    fn stop(&self, k: usize, pressed: &Pressed, old: [f64; 2]) -> f64 {
+        let (normal, total, cross) = (pressed.normal, pressed.total(), self.gains.cross[k]);
+        let cross = cross[0] * (normal[0] - old[0]) + cross[1] * (normal[1] - old[1]);
+        // Points of one line slide alike: each answers for its share of the load.
+        let share = if total > 0.0 { normal[k] / total } else { 0.0 };
+        (self.slide(&self.points[k], &pressed.a, &pressed.b) + cross) * share / self.gains.tangent[k]
     }
 
     /// Rolling resistance, after the other impulses of the contact have turned the bodies.

@@ -3,6 +3,7 @@
 //! The height h counts from the lowest support of a heap (where it touches what does not move; without such
 //! a place, from its lowest body), so that the factor does not depend on where the heap stands.
 
+use super::forest::Forest;
 use super::manifold::{Contact, entry};
 use crate::bodies::{Bodies, Response};
 use crate::math::Vector64;
@@ -44,19 +45,11 @@ pub(super) fn scale(contacts: &[Contact], bodies: &Bodies, up: Vector64, k: f64,
 
 /// The heap of each body, named by its lowest member: bodies that touch each other and can move.
 fn heaps(contacts: &[Contact], bodies: &Bodies) -> Vec<usize> {
-    let mut parent: Vec<usize> = (0..bodies.len()).collect();
+    let mut touching = Forest::default();
+    touching.reset(bodies.len());
     let movable = |id: u32| entry(&bodies.responses, id) != Response::default();
     for contact in contacts.iter().filter(|contact| movable(contact.who.a) && movable(contact.who.b)) {
-        let (a, b) = (root(&mut parent, contact.who.a as usize), root(&mut parent, contact.who.b as usize));
-        parent[a.max(b)] = a.min(b);
+        touching.unite(contact.who.a, contact.who.b);
     }
-    (0..bodies.len()).map(|id| root(&mut parent, id)).collect()
-}
-
-fn root(parent: &mut [usize], mut id: usize) -> usize {
-    while parent[id] != id {
-        parent[id] = parent[parent[id]];
-        id = parent[id];
-    }
-    id
+    (0..bodies.len() as u32).map(|id| touching.root(id) as usize).collect()
 }

@@ -16,6 +16,7 @@
 mod broad;
 mod complementarity;
 mod find;
+mod forest;
 mod jacobi;
 mod joint;
 mod manifold;
@@ -234,9 +235,8 @@ impl Contacts {
         if self.settings.mass_scaling > 0.0 {
             mass_scaling::scale(self.finder.contacts(), bodies, self.up, self.settings.mass_scaling, &mut self.scaled);
         }
-        let responses = if self.scaled.is_empty() { &bodies.responses } else { &self.scaled };
         self.split.clear();
-        self.split.extend(responses.iter().zip(&self.counts).map(|(response, &count)| {
+        self.split.extend(seen(&self.scaled, &bodies.responses).iter().zip(&self.counts).map(|(response, &count)| {
             let shares = (f64::from(count) / relaxation).max(1.0);
             Response { linear: response.linear * shares, angular: response.angular * shares }
         }));
@@ -260,8 +260,7 @@ impl Contacts {
     }
 
     fn apply_displacements(&mut self, bodies: &mut Bodies) {
-        let responses = if self.scaled.is_empty() { &bodies.responses } else { &self.scaled };
-        self.jacobi.apply(responses, &mut bodies.displacements);
+        self.jacobi.apply(seen(&self.scaled, &bodies.responses), &mut bodies.displacements);
         let per_time = 1.0 / self.dt;
         for (load, push) in bodies.contact_loads.iter_mut().zip(&self.jacobi.sums) {
             *load += push.scaled(per_time);
@@ -281,8 +280,7 @@ impl Contacts {
                         Default::default()
                     }
                 });
-                let responses = if self.scaled.is_empty() { &bodies.responses } else { &self.scaled };
-                self.jacobi.apply(responses, &mut bodies.velocities);
+                self.jacobi.apply(seen(&self.scaled, &bodies.responses), &mut bodies.velocities);
                 for (load, push) in bodies.contact_loads.iter_mut().zip(&self.jacobi.sums) {
                     *load += *push;
                 }
@@ -317,8 +315,7 @@ impl Contacts {
         }
         self.corrections.clear();
         self.corrections.resize(bodies.len(), Twist::ZERO);
-        let responses = if self.scaled.is_empty() { &bodies.responses } else { &self.scaled };
-        self.jacobi.apply(responses, &mut self.corrections);
+        self.jacobi.apply(seen(&self.scaled, &bodies.responses), &mut self.corrections);
         for (pose, moved) in bodies.poses.iter_mut().zip(&self.corrections) {
             pose.position += moved.linear;
             pose.angle += moved.angular;
@@ -396,4 +393,9 @@ fn add_pair(sums: &mut [Twist], (a, b): (u32, u32), (on_a, on_b): (Twist, Twist)
     if b != NONE {
         sums[b as usize] -= on_b;
     }
+}
+
+/// The responses that contacts see: the scaled ones, where there are any.
+fn seen<'a>(scaled: &'a [Response], own: &'a [Response]) -> &'a [Response] {
+    if scaled.is_empty() { own } else { scaled }
 }

@@ -1,6 +1,7 @@
 //! Sleep by islands: bodies that touch fall asleep together, once all of them have been slow for a
 //! while, and wake together. Impulses are kept, so that a woken pile stands as it stood.
 
+use super::forest::Forest;
 use super::joint::Linked;
 use super::manifold::Contact;
 use super::pieces::NONE;
@@ -28,7 +29,7 @@ pub(super) struct Islands {
     rest: Vec<f64>,
     /// The island each sleeping body belongs to.
     island: Vec<u32>,
-    parents: Vec<u32>,
+    touching: Forest,
     /// The shortest rest time of each island, at its root.
     #[serde(skip)]
     least: Vec<f64>,
@@ -105,13 +106,12 @@ impl Islands {
         self.unite_touching(bodies, contacts, joints);
         for &body in tired {
             bodies.fall_asleep(body as usize);
-            self.island[body as usize] = self.root(body);
+            self.island[body as usize] = self.touching.root(body);
         }
     }
 
     fn unite_touching(&mut self, bodies: &Bodies, contacts: &[Contact], joints: &[Linked]) {
-        self.parents.clear();
-        self.parents.extend(0..bodies.len() as u32);
+        self.touching.reset(bodies.len());
         let touching =
             contacts.iter().filter(|contact| contact.is_pressed()).map(|contact| (contact.who.a, contact.who.b));
         for (a, b) in touching.chain(joints.iter().map(Linked::bodies)).filter(|&(_, b)| b != NONE) {
@@ -132,35 +132,23 @@ impl Islands {
     fn unite(&mut self, bodies: &Bodies, a: u32, b: u32) {
         let scripted = |id: u32| !bodies.is_dynamic(id as usize) && bodies.is_active(id as usize);
         match (bodies.is_dynamic(a as usize), bodies.is_dynamic(b as usize)) {
-            (true, true) => {
-                let (a, b) = (self.root(a), self.root(b));
-                self.parents[a.max(b) as usize] = a.min(b);
-            }
+            (true, true) => self.touching.unite(a, b),
             (true, false) if scripted(b) => self.rest[a as usize] = 0.0,
             (false, true) if scripted(a) => self.rest[b as usize] = 0.0,
             _ => {}
         }
     }
 
-    fn root(&mut self, mut id: u32) -> u32 {
-        while self.parents[id as usize] != id {
-            let above = self.parents[self.parents[id as usize] as usize];
-            self.parents[id as usize] = above;
-            id = above;
-        }
-        id
-    }
-
     fn put_to_rest(&mut self, bodies: &mut Bodies, settings: &SleepSettings) -> bool {
         self.least.clear();
         self.least.resize(bodies.len(), f64::INFINITY);
         for id in 0..bodies.len() {
-            let root = self.root(id as u32) as usize;
+            let root = self.touching.root(id as u32) as usize;
             self.least[root] = self.least[root].min(self.rest[id]);
         }
         let mut any = false;
         for id in 0..bodies.len() {
-            let root = self.root(id as u32);
+            let root = self.touching.root(id as u32);
             if self.least[root as usize] >= settings.delay && bodies.is_dynamic(id) && !bodies.asleep[id] {
                 bodies.fall_asleep(id);
                 self.island[id] = root;

@@ -2,7 +2,7 @@
 
 use super::{Density, DensityMaterial};
 use crate::constraints::{Corrections, Substep};
-use crate::math::{Real, Vector, wide};
+use crate::math::{Real, Vector, larger, smaller, wide};
 use crate::parallel::CHUNK_ROWS;
 use crate::phase::{MaterialIndex, Phase};
 use crate::scene::GradientPoint;
@@ -332,16 +332,4 @@ impl DensityMaterial {
         let new = smaller(larger(larger(new, least), -limit), limit);
         if error < self.gate || self.relaxation == 0.0 { old } else { new }
     }
-}
-
-/// The larger one; `b` where `a` is not a number. (`Real::max` minds either, at three times the cost.)
-#[inline(always)]
-fn larger(a: Real, b: Real) -> Real {
-    if a > b { a } else { b }
-}
-
-/// The smaller one; `b` where `a` is not a number.
-#[inline(always)]
-fn smaller(a: Real, b: Real) -> Real {
-    if a < b { a } else { b }
 }

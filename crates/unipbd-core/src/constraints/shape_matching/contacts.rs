@@ -34,8 +34,7 @@ pub(super) struct Touch {
     normal: Vector64,
     /// Overlap where the substep began [m].
     old: f64,
-    static_friction: f64,
-    kinetic_friction: f64,
+    surface: Surface,
 }
 
 /// How many contacts push each member and each sample in a round.
@@ -81,7 +80,7 @@ impl ShapeMatching {
             let starts = [a, b].map(|(m, k)| wide(now.particles.starts()[self.rows[m][k] as usize]));
             let old = depth + (apart - (starts[0] - starts[1])).dot(normal);
             let surface = first.surface.combined(&second.surface);
-            touches.push(Touch::new((a, Some(b)), normal, old, &surface));
+            touches.push(Touch::new((a, Some(b)), normal, old, surface));
         }
     }
 
@@ -107,7 +106,7 @@ impl ShapeMatching {
             let (normal, depth) = (wide(hit.normal), f64::from(hit.depth));
             let surface = self.members[a.0].surface.combined(&Surface::with_friction(f64::from(hit.friction)));
             let old = depth + (place - start).dot(normal);
-            touches.push(Touch { wall: hit.measured, ..Touch::new((a, None), normal, old, &surface) });
+            touches.push(Touch { wall: hit.measured, ..Touch::new((a, None), normal, old, surface) });
         }
     }
 
@@ -177,9 +176,7 @@ impl ShapeMatching {
         let tangent = touch.normal.perp();
         let normal = depth / gain(touch.normal);
         let stop = moved.dot(tangent) / gain(tangent);
-        let drag = touch.kinetic_friction * normal;
-        let held = if stop.abs() < touch.static_friction * normal { stop } else { stop.clamp(-drag, drag) };
-        touch.normal * normal - tangent * held
+        touch.normal * normal - tangent * touch.surface.held_back(stop, normal)
     }
 
     /// How far a unit push moves a sample [1/kg], split among contacts: alone where its body is soft, with all of
@@ -210,8 +207,7 @@ impl ShapeMatching {
 }
 
 impl Touch {
-    fn new((a, b): (Sample, Option<Sample>), normal: Vector64, old: f64, surface: &Surface) -> Touch {
-        let (static_friction, kinetic_friction) = (surface.static_friction, surface.kinetic_friction);
-        Touch { a, b, wall: None, normal, old, static_friction, kinetic_friction }
+    fn new((a, b): (Sample, Option<Sample>), normal: Vector64, old: f64, surface: Surface) -> Touch {
+        Touch { a, b, wall: None, normal, old, surface }
     }
 }

@@ -1,7 +1,7 @@
 //! How much of a kernel lies behind walls, and whether any does.
 
 use super::{Rectangle, Walls};
-use crate::math::{Real, Vector};
+use crate::math::{Real, Vector, larger, smaller};
 use crate::walls::Coverage;
 
 impl Walls {
@@ -39,17 +39,15 @@ impl Walls {
     /// far from all walls, this tells so at little cost.
     pub fn distances(&self, points: &[Vector], distances: &mut [Real]) {
         distances.fill(Real::INFINITY);
-        let nearer = |distance: Real, other: Real| if distance < other { distance } else { other };
         for plane in &self.planes {
             for (slot, &x) in distances.iter_mut().zip(points) {
-                *slot = nearer((x - plane.point).dot(plane.normal), *slot);
+                *slot = smaller((x - plane.point).dot(plane.normal), *slot);
             }
         }
         for rectangle in &self.rectangles {
             for (slot, &x) in distances.iter_mut().zip(points) {
                 let (low, high) = (rectangle.min - x, x - rectangle.max);
-                let outside = |low: Real, high: Real| if low > high { low } else { high };
-                *slot = nearer(outside(outside(low.x, high.x), outside(low.y, high.y)), *slot);
+                *slot = smaller(larger(larger(low.x, high.x), larger(low.y, high.y)), *slot);
             }
         }
     }
