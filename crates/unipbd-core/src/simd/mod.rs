@@ -16,6 +16,8 @@ mod shapes;
 pub(crate) mod space;
 pub(crate) mod weigh;
 
+#[cfg(all(target_arch = "x86_64", not(feature = "f64")))]
+mod avx512;
 #[cfg(not(feature = "f64"))]
 mod lanes;
 #[cfg(not(feature = "f64"))]
@@ -43,18 +45,20 @@ pub enum Level {
     Sse2,
     /// One vector of eight lanes.
     Avx2,
+    /// One vector of sixteen lanes: eight rows by two columns of the list.
+    Avx512,
 }
 
 impl Level {
     /// The levels this machine can run, slowest first.
     pub fn available() -> Vec<Level> {
-        let all = [Level::Scalar, Level::Portable, Level::Sse2, Level::Avx2];
+        let all = [Level::Scalar, Level::Portable, Level::Sse2, Level::Avx2, Level::Avx512];
         all.into_iter().filter(|level| level.runs_here()).collect()
     }
 
     /// The fastest level of this machine.
     pub fn best() -> Level {
-        let fastest_first = [Level::Avx2, Level::Sse2, Level::Portable];
+        let fastest_first = [Level::Avx512, Level::Avx2, Level::Sse2, Level::Portable];
         fastest_first.into_iter().find(|level| level.runs_here()).unwrap_or(Level::Scalar)
     }
 
@@ -66,8 +70,14 @@ impl Level {
             Level::Sse2 => true,
             #[cfg(all(target_arch = "x86_64", not(feature = "f64")))]
             Level::Avx2 => std::arch::is_x86_feature_detected!("avx2"),
+            #[cfg(all(target_arch = "x86_64", not(feature = "f64")))]
+            Level::Avx512 => {
+                std::arch::is_x86_feature_detected!("avx2")
+                    && std::arch::is_x86_feature_detected!("avx512f")
+                    && std::arch::is_x86_feature_detected!("avx512vl")
+            }
             #[cfg(not(all(target_arch = "x86_64", not(feature = "f64"))))]
-            Level::Sse2 | Level::Avx2 => false,
+            Level::Sse2 | Level::Avx2 | Level::Avx512 => false,
         }
     }
 }

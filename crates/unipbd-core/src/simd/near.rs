@@ -119,7 +119,9 @@ pub(crate) trait Work {
 pub(crate) fn dispatch(level: Level, work: impl Work) {
     match level {
         #[cfg(all(target_arch = "x86_64", not(feature = "f64")))]
-        Level::Avx2 if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("popcnt") => {
+        Level::Avx2 | Level::Avx512
+            if std::arch::is_x86_feature_detected!("avx2") && std::arch::is_x86_feature_detected!("popcnt") =>
+        {
             // SAFETY: the machine has AVX2 and popcnt.
             unsafe { avx2::run(work) }
         }

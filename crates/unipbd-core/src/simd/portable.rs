@@ -46,7 +46,7 @@ impl Number for Portable {
 }
 
 impl Lanes for Portable {
-    type Counts = [u32; LANES];
+    type Counts = [i32; LANES];
 
     #[inline(always)]
     unsafe fn splat(value: f32) -> Self {
@@ -76,10 +76,14 @@ impl Lanes for Portable {
     }
     #[inline(always)]
     unsafe fn counts(counts: &[u32; LANES]) -> Self::Counts {
-        *counts
+        counts.map(|count| count as i32)
     }
     #[inline(always)]
-    fn where_counted(self, counts: Self::Counts, column: u32) -> Self {
+    unsafe fn two_less(counts: Self::Counts) -> Self::Counts {
+        counts.map(|count| count - 2)
+    }
+    #[inline(always)]
+    fn where_counted(self, counts: Self::Counts, column: i32) -> Self {
         Portable(from_fn(|k| if counts[k] > column { self.0[k] } else { 0.0 }))
     }
     #[inline(always)]

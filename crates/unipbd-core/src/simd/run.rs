@@ -2,7 +2,9 @@
 #![allow(unsafe_code)]
 
 use super::Level;
-use super::lanes::{Entry, Lanes};
+#[cfg(target_arch = "x86_64")]
+use super::avx512::Avx512;
+use super::lanes::{ColumnPair, Entry, Lanes, Turn, Two};
 use super::passes::{Pass, Sink};
 use super::portable::Portable;
 #[cfg(target_arch = "x86_64")]
@@ -12,23 +14,23 @@ use crate::neighbors::{Chunk, Entries, LANES};
 /// The lane form of a pass that sums `N` numbers per row.
 pub(super) trait LanePass<const N: usize>: Pass<N> {
     /// What it reads of the eight rows themselves.
-    type Own<F: Lanes>: Copy;
+    type Own<F: Turn>: Copy;
 
-    /// Reads the rows of a block: `column` holds their offsets from row `base`.
+    /// Reads the rows of a block: `entries` holds their offsets from row `base`, twice.
     ///
     /// # Safety
     /// The machine has the instruction set of `F`; `base` plus each offset is a row of the pass's columns.
-    unsafe fn own<F: Lanes>(&self, base: usize, column: &[i16; LANES]) -> Self::Own<F>;
+    unsafe fn own<F: Turn>(&self, base: usize, entries: &ColumnPair<i16>) -> Self::Own<F>;
 
-    /// What one neighbour of each row adds to the sums. `counted` clears the lanes that are padding.
+    /// What two neighbours of each row add to the sums. `counted` clears the lanes that are padding.
     ///
     /// # Safety
     /// As for [`own`](Self::own).
-    unsafe fn terms<F: Lanes, E: Entry>(
+    unsafe fn terms<F: Turn, E: Entry>(
         &self,
         own: &Self::Own<F>,
         base: usize,
-        column: &[E; LANES],
+        entries: &ColumnPair<E>,
         counted: impl Fn(F) -> F,
     ) -> [F; N];
 }
@@ -49,14 +51,32 @@ pub(super) unsafe fn run<P: LanePass<N>, const N: usize>(
 ) {
     match level {
         #[cfg(target_arch = "x86_64")]
+        // SAFETY: this level is chosen only where the machine has these sets.
+        Level::Avx512 => unsafe { run_avx512(pass, chunk, first, rows, sink) },
+        #[cfg(target_arch = "x86_64")]
         // SAFETY: this level is chosen only where the machine has AVX2.
         Level::Avx2 => unsafe { run_avx2(pass, chunk, first, rows, sink) },
         #[cfg(target_arch = "x86_64")]
         // SAFETY: SSE2 is in the baseline.
-        Level::Sse2 => unsafe { run_chunk::<Sse2, P, N>(pass, chunk, first, rows, sink) },
+        Level::Sse2 => unsafe { run_chunk::<Two<Sse2>, P, N>(pass, chunk, first, rows, sink) },
         // SAFETY: plain arrays run anywhere.
-        _ => unsafe { run_chunk::<Portable, P, N>(pass, chunk, first, rows, sink) },
+        _ => unsafe { run_chunk::<Two<Portable>, P, N>(pass, chunk, first, rows, sink) },
     }
+}
+
+/// # Safety
+/// As for [`run`], on a machine with AVX2, AVX-512F and AVX-512VL.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2,avx512f,avx512vl")]
+unsafe fn run_avx512<P: LanePass<N>, const N: usize>(
+    pass: &P,
+    chunk: &Chunk,
+    first: usize,
+    rows: usize,
+    sink: &mut impl Sink<N>,
+) {
+    // SAFETY: passed on to the caller.
+    unsafe { run_chunk::<Avx512, P, N>(pass, chunk, first, rows, sink) }
 }
 
 /// # Safety
@@ -71,13 +91,13 @@ unsafe fn run_avx2<P: LanePass<N>, const N: usize>(
     sink: &mut impl Sink<N>,
 ) {
     // SAFETY: passed on to the caller.
-    unsafe { run_chunk::<Avx2, P, N>(pass, chunk, first, rows, sink) }
+    unsafe { run_chunk::<Two<Avx2>, P, N>(pass, chunk, first, rows, sink) }
 }
 
 /// # Safety
 /// As for [`run`], on a machine with the instruction set of `F`.
 #[inline(always)]
-unsafe fn run_chunk<F: Lanes, P: LanePass<N>, const N: usize>(
+unsafe fn run_chunk<F: Turn, P: LanePass<N>, const N: usize>(
     pass: &P,
     chunk: &Chunk,
     first: usize,
@@ -91,10 +111,10 @@ unsafe fn run_chunk<F: Lanes, P: LanePass<N>, const N: usize>(
         // SAFETY: passed on to the caller.
         let sums = unsafe {
             let own = if valid == LANES {
-                pass.own::<F>(base, &[0, 1, 2, 3, 4, 5, 6, 7])
+                pass.own::<F>(base, &[[0, 1, 2, 3, 4, 5, 6, 7]; 2])
             } else {
                 // Lanes beyond the last row repeat it, as their padding does.
-                pass.own::<F>(base, &std::array::from_fn(|lane| lane.min(valid - 1) as i16))
+                pass.own::<F>(base, &[std::array::from_fn(|lane| lane.min(valid - 1) as i16); 2])
             };
             let counts = F::counts(&block.counts);
             match chunk.entries(block) {
@@ -102,7 +122,7 @@ unsafe fn run_chunk<F: Lanes, P: LanePass<N>, const N: usize>(
                 Entries::Wide(columns) => sum(pass, &own, base, columns, counts),
             }
         };
-        let sums = pass.finish(sums).map(F::to_array);
+        let sums = pass.finish(sums).map(F::Sums::to_array);
         sink.store(row..row + valid, &sums);
     }
 }
@@ -110,24 +130,23 @@ unsafe fn run_chunk<F: Lanes, P: LanePass<N>, const N: usize>(
 /// # Safety
 /// As for [`run_chunk`].
 #[inline(always)]
-unsafe fn sum<F: Lanes, E: Entry, P: LanePass<N>, const N: usize>(
+unsafe fn sum<F: Turn, E: Entry, P: LanePass<N>, const N: usize>(
     pass: &P,
     own: &P::Own<F>,
     base: usize,
     columns: &[[E; LANES]],
-    counts: F::Counts,
-) -> [F; N] {
+    mut counts: F::Counts,
+) -> [F::Sums; N] {
     // SAFETY: passed on to the caller.
     unsafe {
-        let mut sums = [F::splat(0.0); N];
+        let mut sums = [F::Sums::splat(0.0); N];
         // One loop, not a plain and a masked one: guessing the end of a second loop wrong costs more than the masks.
-        // Two columns a turn: from loads to sums is a long chain, and two of them overlap better than one.
-        for (k, pair) in (0..).step_by(2).zip(columns.as_chunks::<2>().0) {
-            let first = pass.terms(own, base, &pair[0], |value: F| value.where_counted(counts, k));
-            let second = pass.terms(own, base, &pair[1], |value: F| value.where_counted(counts, k + 1));
+        for pair in columns.as_chunks::<2>().0 {
+            let terms = pass.terms(own, base, pair, |value: F| value.where_counted(counts));
             for n in 0..N {
-                sums[n] = (sums[n] + first[n]) + second[n];
+                sums[n] = terms[n].added_to(sums[n]);
             }
+            counts = F::next(counts);
         }
         sums
     }

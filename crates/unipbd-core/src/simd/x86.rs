@@ -19,7 +19,7 @@ pub(super) struct Sse2(__m128, __m128);
 
 /// One vector of eight.
 #[derive(Clone, Copy)]
-pub(super) struct Avx2(__m256);
+pub(super) struct Avx2(pub(super) __m256);
 
 macro_rules! operations {
     ($($operation:ident $name:ident $half:ident $whole:ident)*) => {$(
@@ -60,7 +60,7 @@ fn select(mask: __m128, yes: __m128, no: __m128) -> __m128 {
 /// # Safety
 /// Both places are readable vectors.
 #[inline(always)]
-unsafe fn pair<E: Entry>(base: *const Vec2, low: E, high: E) -> __m128 {
+pub(super) unsafe fn pair<E: Entry>(base: *const Vec2, low: E, high: E) -> __m128 {
     // SAFETY: a Vec2 is two f32 without padding, so 64 bits may be read at each place; the loads ask
     // for no alignment.
     unsafe {
@@ -74,7 +74,7 @@ unsafe fn pair<E: Entry>(base: *const Vec2, low: E, high: E) -> __m128 {
 /// # Safety
 /// The place is a readable record.
 #[inline(always)]
-unsafe fn record<E: Entry>(base: *const Record, entry: E) -> __m128 {
+pub(super) unsafe fn record<E: Entry>(base: *const Record, entry: E) -> __m128 {
     // SAFETY: a record is four f32 without padding; the load asks for no alignment.
     unsafe { _mm_loadu_ps(base.offset(entry.offset()).cast()) }
 }
@@ -160,10 +160,15 @@ impl Lanes for Sse2 {
         unsafe { (_mm_loadu_si128(counts.as_ptr().cast()), _mm_loadu_si128(counts.as_ptr().add(4).cast())) }
     }
     #[inline(always)]
-    fn where_counted(self, counts: Self::Counts, column: u32) -> Self {
+    unsafe fn two_less(counts: Self::Counts) -> Self::Counts {
+        // SAFETY: SSE2 is in the baseline.
+        unsafe { (_mm_sub_epi32(counts.0, _mm_set1_epi32(2)), _mm_sub_epi32(counts.1, _mm_set1_epi32(2))) }
+    }
+    #[inline(always)]
+    fn where_counted(self, counts: Self::Counts, column: i32) -> Self {
         // SAFETY: SSE2 is in the baseline.
         unsafe {
-            let column = _mm_set1_epi32(column as i32);
+            let column = _mm_set1_epi32(column);
             let (low, high) = (_mm_cmpgt_epi32(counts.0, column), _mm_cmpgt_epi32(counts.1, column));
             Sse2(_mm_and_ps(self.0, _mm_castsi128_ps(low)), _mm_and_ps(self.1, _mm_castsi128_ps(high)))
         }
@@ -263,10 +268,15 @@ impl Lanes for Avx2 {
         unsafe { _mm256_loadu_si256(counts.as_ptr().cast()) }
     }
     #[inline(always)]
-    fn where_counted(self, counts: Self::Counts, column: u32) -> Self {
+    unsafe fn two_less(counts: Self::Counts) -> Self::Counts {
+        // SAFETY: the caller vouches for AVX2.
+        unsafe { _mm256_sub_epi32(counts, _mm256_set1_epi32(2)) }
+    }
+    #[inline(always)]
+    fn where_counted(self, counts: Self::Counts, column: i32) -> Self {
         // SAFETY: a value of this type proves AVX2.
         unsafe {
-            let counted = _mm256_cmpgt_epi32(counts, _mm256_set1_epi32(column as i32));
+            let counted = _mm256_cmpgt_epi32(counts, _mm256_set1_epi32(column));
             Avx2(_mm256_and_ps(self.0, _mm256_castsi256_ps(counted)))
         }
     }

@@ -61,33 +61,32 @@ impl<K: Shape, S: Space> Pass<2> for Correction<'_, K, S> {
 #[cfg(not(feature = "f64"))]
 mod lanes {
     use super::*;
-    use crate::neighbors::LANES;
-    use crate::simd::lanes::{Entry, Lanes};
+    use crate::simd::lanes::{ColumnPair, Entry, Turn};
     use crate::simd::run::LanePass;
 
     #[allow(unsafe_code)]
     impl<K: Shape, S: Space> LanePass<2> for Correction<'_, K, S> {
         /// Position and multiplier.
-        type Own<F: Lanes> = (F, F, F);
+        type Own<F: Turn> = (F, F, F);
 
         #[inline(always)]
-        unsafe fn own<F: Lanes>(&self, base: usize, column: &[i16; LANES]) -> Self::Own<F> {
+        unsafe fn own<F: Turn>(&self, base: usize, entries: &ColumnPair<i16>) -> Self::Own<F> {
             // SAFETY: the caller vouches that all rows are within the columns.
-            let ((x, y), (multiplier, _)) = unsafe { F::gather_records(self.records.as_ptr().add(base), column) };
+            let ((x, y), (multiplier, _)) = unsafe { F::gather_records(self.records.as_ptr().add(base), entries) };
             (x, y, multiplier)
         }
 
         #[inline(always)]
-        unsafe fn terms<F: Lanes, E: Entry>(
+        unsafe fn terms<F: Turn, E: Entry>(
             &self,
             own: &Self::Own<F>,
             base: usize,
-            column: &[E; LANES],
+            entries: &ColumnPair<E>,
             _counted: impl Fn(F) -> F,
         ) -> [F; 2] {
             // SAFETY: the caller vouches that all rows are within the columns.
             let ((other_x, other_y), (multiplier, _)) =
-                unsafe { F::gather_records(self.records.as_ptr().add(base), column) };
+                unsafe { F::gather_records(self.records.as_ptr().add(base), entries) };
             let (x, y) = self.space.shortest(own.0 - other_x, own.1 - other_y);
             let factor = self.kernel.at(x * x + y * y).1 * (own.2 + multiplier);
             // Padding lies at distance zero and adds nothing.

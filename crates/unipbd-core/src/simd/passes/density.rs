@@ -115,33 +115,33 @@ impl<K: Shape, S: Space, const SPLIT: bool, const WEIGHTED: bool> Pass<4> for De
 #[cfg(not(feature = "f64"))]
 mod lanes {
     use super::*;
-    use crate::simd::lanes::{Entry, Lanes};
+    use crate::simd::lanes::{ColumnPair, Entry, Turn};
     use crate::simd::run::LanePass;
 
     #[allow(unsafe_code)]
     impl<K: Shape, S: Space, const SPLIT: bool, const WEIGHTED: bool> LanePass<4> for Density<'_, K, S, SPLIT, WEIGHTED> {
         /// The position, and the position for gradients.
-        type Own<F: Lanes> = ((F, F), (F, F));
+        type Own<F: Turn> = ((F, F), (F, F));
 
         #[inline(always)]
-        unsafe fn own<F: Lanes>(&self, base: usize, column: &[i16; LANES]) -> Self::Own<F> {
+        unsafe fn own<F: Turn>(&self, base: usize, entries: &ColumnPair<i16>) -> Self::Own<F> {
             // SAFETY: the caller vouches that all rows are within the columns.
             unsafe {
-                let at = F::gather_vectors(self.positions.as_ptr().add(base), column);
-                (at, if SPLIT { F::gather_vectors(self.gradient_positions.as_ptr().add(base), column) } else { at })
+                let at = F::gather_vectors(self.positions.as_ptr().add(base), entries);
+                (at, if SPLIT { F::gather_vectors(self.gradient_positions.as_ptr().add(base), entries) } else { at })
             }
         }
 
         #[inline(always)]
-        unsafe fn terms<F: Lanes, E: Entry>(
+        unsafe fn terms<F: Turn, E: Entry>(
             &self,
             own: &Self::Own<F>,
             base: usize,
-            column: &[E; LANES],
+            entries: &ColumnPair<E>,
             counted: impl Fn(F) -> F,
         ) -> [F; 4] {
             // SAFETY: the caller vouches that all rows are within the columns.
-            let gather = |from: &[Vector]| unsafe { F::gather_vectors(from.as_ptr().add(base), column) };
+            let gather = |from: &[Vector]| unsafe { F::gather_vectors(from.as_ptr().add(base), entries) };
             let (other_x, other_y) = gather(self.positions);
             let (mut x, mut y) = self.space.shortest(own.0.0 - other_x, own.0.1 - other_y);
             let mut square = x * x + y * y;
@@ -155,7 +155,7 @@ mod lanes {
             let mut norm = g * g * square;
             if WEIGHTED {
                 // SAFETY: as above.
-                norm = norm * unsafe { F::gather(self.weights.as_ptr().add(base), column) };
+                norm = norm * unsafe { F::gather(self.weights.as_ptr().add(base), entries) };
             }
             // Padding lies at distance zero: its W must be cleared, its gradient is zero anyway.
             [counted(w), g * x, g * y, norm]

@@ -105,51 +105,50 @@ impl<K: Shape, S: Space, const WEIGHTED: bool> Pass<1> for Laplacian<'_, K, S, W
 #[cfg(not(feature = "f64"))]
 mod lanes {
     use super::*;
-    use crate::neighbors::LANES;
-    use crate::simd::lanes::{Entry, Lanes};
+    use crate::simd::lanes::{ColumnPair, Entry, Turn};
     use crate::simd::run::LanePass;
 
     /// Position and field value.
     ///
     /// # Safety
-    /// As for [`Lanes::gather`], in both columns.
+    /// As for [`Turn::gather`], in both columns.
     #[allow(unsafe_code)]
     #[inline(always)]
-    unsafe fn gather_both<F: Lanes, E: Entry>(
+    unsafe fn gather_both<F: Turn, E: Entry>(
         positions: &[Vector],
         field: &[Real],
         base: usize,
-        column: &[E; LANES],
+        entries: &ColumnPair<E>,
     ) -> (F, F, F) {
         // SAFETY: passed on to the caller.
         unsafe {
-            let (x, y) = F::gather_vectors(positions.as_ptr().add(base), column);
-            (x, y, F::gather(field.as_ptr().add(base), column))
+            let (x, y) = F::gather_vectors(positions.as_ptr().add(base), entries);
+            (x, y, F::gather(field.as_ptr().add(base), entries))
         }
     }
 
     #[allow(unsafe_code)]
     impl<K: Shape, S: Space> LanePass<2> for Gradient<'_, K, S> {
         /// Position and field value.
-        type Own<F: Lanes> = (F, F, F);
+        type Own<F: Turn> = (F, F, F);
 
         #[inline(always)]
-        unsafe fn own<F: Lanes>(&self, base: usize, column: &[i16; LANES]) -> Self::Own<F> {
+        unsafe fn own<F: Turn>(&self, base: usize, entries: &ColumnPair<i16>) -> Self::Own<F> {
             // SAFETY: the caller vouches that all rows are within the columns.
-            unsafe { gather_both(self.positions, self.field, base, column) }
+            unsafe { gather_both(self.positions, self.field, base, entries) }
         }
 
         #[inline(always)]
-        unsafe fn terms<F: Lanes, E: Entry>(
+        unsafe fn terms<F: Turn, E: Entry>(
             &self,
             own: &Self::Own<F>,
             base: usize,
-            column: &[E; LANES],
+            entries: &ColumnPair<E>,
             _counted: impl Fn(F) -> F,
         ) -> [F; 2] {
             // SAFETY: the caller vouches that all rows are within the columns.
             let (other_x, other_y, other): Self::Own<F> =
-                unsafe { gather_both(self.positions, self.field, base, column) };
+                unsafe { gather_both(self.positions, self.field, base, entries) };
             let (x, y) = self.space.shortest(own.0 - other_x, own.1 - other_y);
             let factor = self.kernel.at(x * x + y * y).1 * (other - own.2);
             // Padding lies at distance zero and adds nothing.
@@ -160,30 +159,30 @@ mod lanes {
     #[allow(unsafe_code)]
     impl<K: Shape, S: Space, const WEIGHTED: bool> LanePass<1> for Laplacian<'_, K, S, WEIGHTED> {
         /// Position and field value.
-        type Own<F: Lanes> = (F, F, F);
+        type Own<F: Turn> = (F, F, F);
 
         #[inline(always)]
-        unsafe fn own<F: Lanes>(&self, base: usize, column: &[i16; LANES]) -> Self::Own<F> {
+        unsafe fn own<F: Turn>(&self, base: usize, entries: &ColumnPair<i16>) -> Self::Own<F> {
             // SAFETY: the caller vouches that all rows are within the columns.
-            unsafe { gather_both(self.positions, self.field, base, column) }
+            unsafe { gather_both(self.positions, self.field, base, entries) }
         }
 
         #[inline(always)]
-        unsafe fn terms<F: Lanes, E: Entry>(
+        unsafe fn terms<F: Turn, E: Entry>(
             &self,
             own: &Self::Own<F>,
             base: usize,
-            column: &[E; LANES],
+            entries: &ColumnPair<E>,
             _counted: impl Fn(F) -> F,
         ) -> [F; 1] {
             // SAFETY: the caller vouches that all rows are within the columns.
             let (other_x, other_y, other): Self::Own<F> =
-                unsafe { gather_both(self.positions, self.field, base, column) };
+                unsafe { gather_both(self.positions, self.field, base, entries) };
             let (x, y) = self.space.shortest(own.0 - other_x, own.1 - other_y);
             let mut g = self.kernel.at(x * x + y * y).1;
             if WEIGHTED {
                 // SAFETY: as above.
-                g = g * unsafe { F::gather(self.weights.as_ptr().add(base), column) };
+                g = g * unsafe { F::gather(self.weights.as_ptr().add(base), entries) };
             }
             // Padding has no difference of its own and adds nothing.
             [g * (own.2 - other)]

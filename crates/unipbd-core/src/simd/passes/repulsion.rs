@@ -84,43 +84,46 @@ impl<S: Space, const WEIGHTED: bool> Pass<2> for Repulsion<'_, S, WEIGHTED> {
 #[cfg(not(feature = "f64"))]
 mod lanes {
     use super::*;
-    use crate::neighbors::LANES;
-    use crate::simd::lanes::{Entry, Lanes};
+    use crate::simd::lanes::{ColumnPair, Entry, Turn};
     use crate::simd::run::LanePass;
+
+    /// The entries as numbers.
+    #[inline(always)]
+    fn offsets<E: Entry>([first, second]: &ColumnPair<E>) -> ColumnPair<f32> {
+        [first.map(|entry| entry.offset() as f32), second.map(|entry| entry.offset() as f32)]
+    }
 
     #[allow(unsafe_code)]
     impl<S: Space, const WEIGHTED: bool> LanePass<2> for Repulsion<'_, S, WEIGHTED> {
         /// Position, and offset in the block.
-        type Own<F: Lanes> = (F, F, F);
+        type Own<F: Turn> = (F, F, F);
 
         #[inline(always)]
-        unsafe fn own<F: Lanes>(&self, base: usize, column: &[i16; LANES]) -> Self::Own<F> {
+        unsafe fn own<F: Turn>(&self, base: usize, entries: &ColumnPair<i16>) -> Self::Own<F> {
             // SAFETY: the caller vouches that all rows are within the columns.
             unsafe {
-                let (x, y) = F::gather_vectors(self.positions.as_ptr().add(base), column);
-                (x, y, F::load(&column.map(|entry| entry.offset() as f32)))
+                let (x, y) = F::gather_vectors(self.positions.as_ptr().add(base), entries);
+                (x, y, F::load(&offsets(entries)))
             }
         }
 
         #[inline(always)]
-        unsafe fn terms<F: Lanes, E: Entry>(
+        unsafe fn terms<F: Turn, E: Entry>(
             &self,
             own: &Self::Own<F>,
             base: usize,
-            column: &[E; LANES],
+            entries: &ColumnPair<E>,
             counted: impl Fn(F) -> F,
         ) -> [F; 2] {
             // SAFETY: the caller vouches that all rows are within the columns.
-            let ((other_x, other_y), offset) = unsafe {
-                let offsets = column.map(|entry| entry.offset() as f32);
-                (F::gather_vectors(self.positions.as_ptr().add(base), column), F::load(&offsets))
-            };
+            let ((other_x, other_y), offset) =
+                unsafe { (F::gather_vectors(self.positions.as_ptr().add(base), entries), F::load(&offsets(entries))) };
             let (x, y) = self.space.shortest(own.0 - other_x, own.1 - other_y);
             let square = x * x + y * y;
             let mut push = counted(self.overlap(square));
             if WEIGHTED {
                 // SAFETY: as above.
-                push = push * unsafe { F::gather(self.weights.as_ptr().add(base), column) };
+                push = push * unsafe { F::gather(self.weights.as_ptr().add(base), entries) };
             }
             let order = own.2.where_below(offset, x.like(-1.0), x.like(1.0));
             let (push_x, push_y) = Self::along(x, y, square, push, order);

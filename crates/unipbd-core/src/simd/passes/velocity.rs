@@ -186,47 +186,50 @@ impl<K: Shape, S: Space> Pass<1> for Vorticity<'_, K, S> {
 #[cfg(not(feature = "f64"))]
 mod lanes {
     use super::*;
-    use crate::neighbors::LANES;
-    use crate::simd::lanes::{Entry, Lanes};
+    use crate::simd::lanes::{ColumnPair, Entry, Turn};
     use crate::simd::run::LanePass;
 
     /// Positions and velocities.
     ///
     /// # Safety
-    /// As for [`Lanes::gather_records`].
+    /// As for [`Turn::gather_records`].
     #[allow(unsafe_code)]
     #[inline(always)]
-    unsafe fn gather<F: Lanes, E: Entry>(columns: &Columns<'_>, base: usize, column: &[E; LANES]) -> ((F, F), (F, F)) {
+    unsafe fn gather<F: Turn, E: Entry>(
+        columns: &Columns<'_>,
+        base: usize,
+        entries: &ColumnPair<E>,
+    ) -> ((F, F), (F, F)) {
         // SAFETY: passed on to the caller.
-        unsafe { F::gather_records(columns.records.as_ptr().add(base), column) }
+        unsafe { F::gather_records(columns.records.as_ptr().add(base), entries) }
     }
 
     #[allow(unsafe_code)]
     impl<K: Shape, S: Space, const WEIGHTED: bool> LanePass<2> for Xsph<'_, K, S, WEIGHTED> {
         /// Position and velocity.
-        type Own<F: Lanes> = ((F, F), (F, F));
+        type Own<F: Turn> = ((F, F), (F, F));
 
         #[inline(always)]
-        unsafe fn own<F: Lanes>(&self, base: usize, column: &[i16; LANES]) -> Self::Own<F> {
+        unsafe fn own<F: Turn>(&self, base: usize, entries: &ColumnPair<i16>) -> Self::Own<F> {
             // SAFETY: the caller vouches that all rows are within the columns.
-            unsafe { gather(&self.columns, base, column) }
+            unsafe { gather(&self.columns, base, entries) }
         }
 
         #[inline(always)]
-        unsafe fn terms<F: Lanes, E: Entry>(
+        unsafe fn terms<F: Turn, E: Entry>(
             &self,
             own: &Self::Own<F>,
             base: usize,
-            column: &[E; LANES],
+            entries: &ColumnPair<E>,
             _counted: impl Fn(F) -> F,
         ) -> [F; 2] {
             // SAFETY: the caller vouches that all rows are within the columns.
-            let ((other_x, other_y), (u, v)): Self::Own<F> = unsafe { gather(&self.columns, base, column) };
+            let ((other_x, other_y), (u, v)): Self::Own<F> = unsafe { gather(&self.columns, base, entries) };
             let (x, y) = self.space.shortest(own.0.0 - other_x, own.0.1 - other_y);
             let mut w = self.kernel.at(x * x + y * y).0;
             if WEIGHTED {
                 // SAFETY: as above.
-                w = w * unsafe { F::gather(self.weights.as_ptr().add(base), column) };
+                w = w * unsafe { F::gather(self.weights.as_ptr().add(base), entries) };
             }
             // Padding has no velocity of its own and adds nothing.
             [w * (u - own.1.0), w * (v - own.1.1)]
@@ -236,29 +239,29 @@ mod lanes {
     #[allow(unsafe_code)]
     impl<K: Shape, S: Space> LanePass<2> for XsphMixed<'_, K, S> {
         /// Position, velocity and traits.
-        type Own<F: Lanes> = ((F, F), (F, F), (F, F));
+        type Own<F: Turn> = ((F, F), (F, F), (F, F));
 
         #[inline(always)]
-        unsafe fn own<F: Lanes>(&self, base: usize, column: &[i16; LANES]) -> Self::Own<F> {
+        unsafe fn own<F: Turn>(&self, base: usize, entries: &ColumnPair<i16>) -> Self::Own<F> {
             // SAFETY: the caller vouches that all rows are within the columns.
             unsafe {
-                let (at, velocity) = gather(&self.columns, base, column);
-                (at, velocity, F::gather_vectors(self.traits.as_ptr().add(base), column))
+                let (at, velocity) = gather(&self.columns, base, entries);
+                (at, velocity, F::gather_vectors(self.traits.as_ptr().add(base), entries))
             }
         }
 
         #[inline(always)]
-        unsafe fn terms<F: Lanes, E: Entry>(
+        unsafe fn terms<F: Turn, E: Entry>(
             &self,
             own: &Self::Own<F>,
             base: usize,
-            column: &[E; LANES],
+            entries: &ColumnPair<E>,
             _counted: impl Fn(F) -> F,
         ) -> [F; 2] {
             // SAFETY: the caller vouches that all rows are within the columns.
             let (((other_x, other_y), (u, v)), traits): (((F, F), (F, F)), (F, F)) = unsafe {
-                let both = gather(&self.columns, base, column);
-                (both, F::gather_vectors(self.traits.as_ptr().add(base), column))
+                let both = gather(&self.columns, base, entries);
+                (both, F::gather_vectors(self.traits.as_ptr().add(base), entries))
             };
             let (x, y) = self.space.shortest(own.0.0 - other_x, own.0.1 - other_y);
             let w = self.kernel.at(x * x + y * y).0 * exchange(own.2, traits);
@@ -270,24 +273,24 @@ mod lanes {
     #[allow(unsafe_code)]
     impl<K: Shape, S: Space> LanePass<1> for Vorticity<'_, K, S> {
         /// Position and velocity.
-        type Own<F: Lanes> = ((F, F), (F, F));
+        type Own<F: Turn> = ((F, F), (F, F));
 
         #[inline(always)]
-        unsafe fn own<F: Lanes>(&self, base: usize, column: &[i16; LANES]) -> Self::Own<F> {
+        unsafe fn own<F: Turn>(&self, base: usize, entries: &ColumnPair<i16>) -> Self::Own<F> {
             // SAFETY: the caller vouches that all rows are within the columns.
-            unsafe { gather(&self.columns, base, column) }
+            unsafe { gather(&self.columns, base, entries) }
         }
 
         #[inline(always)]
-        unsafe fn terms<F: Lanes, E: Entry>(
+        unsafe fn terms<F: Turn, E: Entry>(
             &self,
             own: &Self::Own<F>,
             base: usize,
-            column: &[E; LANES],
+            entries: &ColumnPair<E>,
             _counted: impl Fn(F) -> F,
         ) -> [F; 1] {
             // SAFETY: the caller vouches that all rows are within the columns.
-            let ((other_x, other_y), (u, v)): Self::Own<F> = unsafe { gather(&self.columns, base, column) };
+            let ((other_x, other_y), (u, v)): Self::Own<F> = unsafe { gather(&self.columns, base, entries) };
             let (x, y) = self.space.shortest(own.0.0 - other_x, own.0.1 - other_y);
             let g = self.kernel.at(x * x + y * y).1;
             // Padding lies at distance zero and adds nothing.
