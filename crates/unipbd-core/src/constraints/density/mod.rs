@@ -5,6 +5,7 @@
 //! resist compression alone, gas dilation too. One relaxed Jacobi step per substep replaces the many
 //! iterations of a large step (Macklin et al. 2019).
 
+mod places;
 mod pressure;
 mod settings;
 mod solve;
@@ -15,9 +16,9 @@ use super::{ConstraintGroup, Corrections, DensityColumns, Needs, Substep};
 use crate::bytes::held;
 use crate::kernel::Kernel;
 use crate::math::{Real, Vector};
-use crate::scene::GradientPoint;
 use crate::simd::Records;
 use crate::walls::Coverage;
+use places::Places;
 
 /// The density constraints of all liquids and gases of a scene.
 pub struct Density {
@@ -30,8 +31,7 @@ pub struct Density {
     multiplier: Vec<Real>,
     step: Vec<Real>,
     wall_gradient: Vec<Vector>,
-    /// Half way between start and prediction, where the constraint is taken there.
-    middle: Vec<Vector>,
+    places: Places,
     /// Repulsion strength by row.
     strength: Vec<Real>,
     records: Records,
@@ -64,13 +64,13 @@ impl Density {
         Density {
             kernel,
             coverage: Coverage::new(&kernel),
+            places: Places::new(settings.gradients, settings.spacing),
             settings,
             sums: Sums::default(),
             error: Vec::new(),
             multiplier: Vec::new(),
             step: Vec::new(),
             wall_gradient: Vec::new(),
-            middle: Vec::new(),
             strength: Vec::new(),
             records: Records::default(),
         }
@@ -81,35 +81,6 @@ impl Density {
         self.error.resize(rows, 0.0);
         self.multiplier.resize(rows, 0.0);
         self.wall_gradient.resize(rows, Vector::ZERO);
-    }
-
-    /// Positions at which gradients are taken.
-    fn gradient_positions<'a>(gradients: GradientPoint, middle: &'a [Vector], now: Substep<'a>) -> &'a [Vector] {
-        let all = match gradients {
-            GradientPoint::Predicted => now.particles.positions(),
-            GradientPoint::Start => now.particles.starts(),
-            GradientPoint::Middle => middle,
-        };
-        &all[..now.particles.dense()]
-    }
-
-    /// Positions at which the density is taken.
-    fn value_positions<'a>(gradients: GradientPoint, middle: &'a [Vector], now: Substep<'a>) -> &'a [Vector] {
-        match gradients {
-            GradientPoint::Predicted | GradientPoint::Start => now.particles.positions(),
-            GradientPoint::Middle => middle,
-        }
-    }
-
-    /// x - dt v/2, where the constraint is taken half way: it lets a wave pass with half the damping
-    /// (the iteration is stable for omega lambda < 2 instead of 4/3).
-    fn find_middle(&mut self, now: Substep<'_>) {
-        if self.settings.gradients != GradientPoint::Middle {
-            return;
-        }
-        let (positions, velocities, half) = (now.particles.positions(), now.particles.velocities(), 0.5 * now.dt);
-        self.middle.resize(now.particles.dense(), Vector::ZERO);
-        now.parallelism.fill(&mut self.middle, |row| positions[row] - velocities[row] * half);
     }
 }
 
@@ -131,7 +102,7 @@ impl ConstraintGroup for Density {
     }
 
     fn project(&mut self, now: Substep<'_>, out: &mut Corrections) {
-        self.find_middle(now);
+        self.places.find(now);
         self.sum_kernels(now);
         self.step_multipliers(now);
         self.correct(now, out);
@@ -146,7 +117,7 @@ impl ConstraintGroup for Density {
             + held(&self.multiplier)
             + held(&self.step)
             + held(&self.wall_gradient)
-            + held(&self.middle)
+            + self.places.memory_bytes()
             + held(&self.strength)
             + self.sums.memory_bytes()
             + self.records.memory_bytes()

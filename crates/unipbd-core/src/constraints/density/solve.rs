@@ -5,7 +5,6 @@ use crate::constraints::{Corrections, Substep};
 use crate::math::{Real, Vector, larger, smaller, wide};
 use crate::parallel::CHUNK_ROWS;
 use crate::phase::{MaterialIndex, Phase};
-use crate::scene::GradientPoint;
 use crate::simd::near::{self, Near, Work};
 use crate::simd::space::{Open, Space, Wrapped};
 use crate::simd::weigh::{At, Weighed};
@@ -15,13 +14,9 @@ use crate::walls::Coverage;
 impl Density {
     /// Pass 1: sums of the kernel, its gradient and the response of the neighbours.
     pub(super) fn sum_kernels(&mut self, now: Substep<'_>) {
-        let gradients = self.settings.gradients;
         let input = DensityInput {
-            positions: Density::value_positions(gradients, &self.middle, now),
-            gradient_positions: match gradients {
-                GradientPoint::Predicted | GradientPoint::Middle => None,
-                GradientPoint::Start => Some(now.particles.starts()),
-            },
+            positions: self.places.pair_values(now),
+            gradient_positions: self.places.other_pair_gradients(now),
             weights: match self.settings.uniform_inverse_mass {
                 Some(inverse_mass) if !now.particles.any_scripted() => Weights::Uniform(inverse_mass),
                 _ => Weights::Column(now.particles.inverse_masses()),
@@ -38,15 +33,11 @@ impl Density {
     /// Pass 2: density errors and the relaxed step of each multiplier.
     pub(super) fn step_multipliers(&mut self, now: Substep<'_>) {
         let volume = self.settings.volume;
-        let gradients = self.settings.gradients;
         let behind_walls = BehindWalls {
             now,
             coverage: &self.coverage,
-            positions: Density::value_positions(gradients, &self.middle, now),
-            gradient_positions: match gradients {
-                GradientPoint::Start => Some(now.particles.starts()),
-                GradientPoint::Predicted | GradientPoint::Middle => None,
-            },
+            positions: self.places.values(now),
+            gradient_positions: self.places.other_gradients(now),
         };
         let terms =
             Terms { volume, own: self.kernel.value(0.0) * volume - 1.0, limit: now.pressure_limit * now.dt * now.dt };
@@ -82,7 +73,7 @@ impl Density {
 
     /// Pass 3: displacements, gathered per row, so that momentum is kept with unequal masses too.
     pub(super) fn correct(&mut self, now: Substep<'_>, out: &mut Corrections) {
-        let positions = Density::gradient_positions(self.settings.gradients, &self.middle, now);
+        let positions = self.places.pair_gradients(now);
         let (sums, records) = (&mut self.sums.gradient, &mut self.records);
         match self.kernel.alternative() {
             None => simd::correction(now.pairs(), self.kernel.shape(), positions, &self.step, records, sums),
@@ -115,7 +106,7 @@ impl Density {
         if out.wall_loads().is_empty() {
             return;
         }
-        let positions = Density::gradient_positions(self.settings.gradients, &self.middle, now);
+        let positions = self.places.gradients(now);
         let (steps, inverse_masses) = (&self.step, now.particles.inverse_masses());
         for (row, &position) in positions.iter().enumerate() {
             if steps[row] != 0.0 && inverse_masses[row] > 0.0 {
@@ -132,7 +123,7 @@ impl Density {
         let (materials, material_of) = (&self.settings.materials, now.particles.materials());
         self.strength.resize(now.particles.dense(), 0.0);
         now.parallelism.fill(&mut self.strength, |i| materials[usize::from(material_of[i])].repulsion);
-        let positions = Density::gradient_positions(self.settings.gradients, &self.middle, now);
+        let positions = self.places.pair_gradients(now);
         let strengths = Weights::Column(&self.strength);
         simd::repulsion(now.pairs(), reach, positions, strengths, &mut self.sums.gradient);
         let (sums, strength) = (&self.sums.gradient, &self.strength);
@@ -153,7 +144,7 @@ impl Density {
             Phase::Liquid if inverse_masses[i] > 0.0 => 0.5 * pressure / inverse_masses[i],
             _ => 0.0,
         });
-        let positions = Density::gradient_positions(self.settings.gradients, &self.middle, now);
+        let positions = self.places.pair_gradients(now);
         let (sums, records) = (&mut self.sums.gradient, &mut self.records);
         let reference = 0.2 * self.settings.kernel_radius;
         match self.kernel.alternative() {
@@ -188,12 +179,14 @@ impl Density {
 
     fn measure_with(&self, shape: impl Shape, now: Substep<'_>, errors: &mut [Real]) {
         let periodic = now.neighbors.periodic();
+        let fine = self.places.settled(now);
+        let fine = fine.as_deref().unwrap_or(now.particles.positions());
         now.parallelism.chunks(errors, |first, out| {
             if periodic.any() {
                 let space = Wrapped::new(periodic);
-                near::dispatch(Level::best(), Measured { density: self, shape, now, space, first, out });
+                near::dispatch(Level::best(), Measured { density: self, shape, now, fine, space, first, out });
             } else {
-                near::dispatch(Level::best(), Measured { density: self, shape, now, space: Open, first, out });
+                near::dispatch(Level::best(), Measured { density: self, shape, now, fine, space: Open, first, out });
             }
         });
     }
@@ -204,6 +197,8 @@ struct Measured<'a, S, K> {
     density: &'a Density,
     shape: K,
     now: Substep<'a>,
+    /// Positions whose differences are exact.
+    fine: &'a [Vector],
     space: S,
     first: usize,
     out: &'a mut [Real],
@@ -212,17 +207,17 @@ struct Measured<'a, S, K> {
 impl<S: Space, K: Shape> Work for Measured<'_, S, K> {
     #[inline(always)]
     fn run<N: Near>(self, near: N) {
-        let Measured { density, shape, now, space, first, out } = self;
+        let Measured { density, shape, now, fine, space, first, out } = self;
         let particles = now.particles;
-        let positions = &particles.positions()[..particles.dense()];
+        let fine = &fine[..particles.dense()];
         let scale = density.settings.volume * shape.value_scale();
         for (row, out) in (first..).zip(out) {
             if !particles.phases()[row].is_fluid() {
                 continue;
             }
-            let point = positions[row];
+            let point = particles.positions()[row];
             // Only the weights are asked for: any column will do for the vectors.
-            let at = At { space, kernel: shape, point, positions, vectors: positions };
+            let at = At { space, kernel: shape, point: fine[row], positions: fine, vectors: fine };
             let mut sums = Weighed::default();
             // No closure here: it would miss the instruction set.
             for run in now.neighbors.runs_near(point).iter() {
