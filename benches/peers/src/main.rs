@@ -1,7 +1,7 @@
 //! unipbd beside other solvers, in one run: `benches/peers.sh` prepares all of them and starts this.
 //!
 //! `unipbd-peers [--particles 5000,20000] [--seconds 2] [--bodies 5000] [--rows 100] [--only liquids|bodies] [--pbf yes]
-//! [--radius 3,2]`
+//! [--radius 3,2] [--peers dfsph,salva,taichi]`
 
 mod case;
 mod chart;
@@ -59,13 +59,19 @@ fn liquids_table(case: &Case, bars: &mut Vec<(String, f64)>) {
     let settings = radii.flat_map(|radius| TARGETS.map(|target| (radius, target)));
     let ours: Vec<Outcome> = settings.map(|(radius, target)| liquids::unipbd(case, radius, target, 1)).collect();
     let dt = (0.1 * case.dx).min(0.002);
-    let mut peers = vec![
-        python::peer(case, "splishsplash.py", "dfsph:0.1").map_err(|why| format!("SPlisHSPlasH DFSPH: skipped, {why}")),
-        Ok(liquids::salva(case, 0.001, dt)),
-        Ok(liquids::salva(case, 0.01, dt)),
-        Ok(liquids::salva(case, 0.05, dt)),
-        python::peer(case, "taichi_pbf.py", "1").map_err(|why| format!("taichi: skipped, {why}")),
-    ];
+    let asked = option("--peers", "dfsph,salva,taichi");
+    let asked = |name: &str| asked.split(',').any(|peer| peer == name);
+    let python = |name: &str, short: &str, script: &str, setting: &str| {
+        let outcome = if asked(short) { python::peer(case, script, setting) } else { Err("not asked for".to_owned()) };
+        outcome.map_err(|why| format!("{name}: skipped, {why}"))
+    };
+    let mut peers = vec![python("SPlisHSPlasH DFSPH", "dfsph", "splishsplash.py", "dfsph:0.1")];
+    if asked("salva") {
+        peers.extend([0.001, 0.01, 0.05].map(|error| Ok(liquids::salva(case, error, dt))));
+    } else {
+        peers.push(Err("salva2d: skipped, not asked for".to_owned()));
+    }
+    peers.push(python("taichi", "taichi", "taichi_pbf.py", "1"));
     peers.push(if option("--pbf", "no") == "yes" {
         python::peer(case, "splishsplash.py", "pbf").map_err(|why| format!("SPlisHSPlasH PBF: skipped, {why}"))
     } else {

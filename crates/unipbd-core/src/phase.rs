@@ -55,3 +55,10 @@ impl Phase {
 
 /// Index of a material in [`Solver::materials`](crate::Solver::materials).
 pub type MaterialIndex = u16;
+
+/// The material of all rows, if they have but one. No early return: the loop fills the vectors of the machine.
+#[inline]
+pub(crate) fn uniform(materials: &[MaterialIndex]) -> Option<MaterialIndex> {
+    let &first = materials.first()?;
+    (!materials.iter().fold(false, |any, &material| any | (material != first))).then_some(first)
+}

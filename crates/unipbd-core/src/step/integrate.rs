@@ -9,8 +9,9 @@ use crate::math::{Real, Vector, wide};
 use crate::neighbors::Periodic;
 use crate::parallel::{CHUNK_ROWS, Parallelism};
 use crate::particles::Particles;
-use crate::phase::Phase;
+use crate::phase::{Phase, uniform};
 use crate::walls::{Hit, Walls};
+use std::ops::Range;
 
 /// Acceleration of a material by body forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -36,6 +37,11 @@ pub(super) fn predict(particles: &mut Particles, forces: &[BodyForce], dt: Real,
             None => pull,
         }
     };
+    // The pull on all rows of a chunk, if it is one.
+    let common = |rows: Range<usize>| {
+        let material = uniform(&material[rows.clone()])?;
+        (acceleration.is_empty() && !forces[usize::from(material)].thermal).then(|| pull(rows.start))
+    };
     for rows in bands {
         let band = rows.start;
         let (velocity, start) = (&mut particles.velocity[rows.clone()], &mut particles.start[rows.clone()]);
@@ -49,12 +55,25 @@ pub(super) fn predict(particles: &mut Particles, forces: &[BodyForce], dt: Real,
                 let first = band + first;
                 let rows = first..first + velocity.len();
                 start.copy_from_slice(position);
-                accelerate(velocity, &inverse_mass[rows.clone()], |k| pull(first + k));
-                let moving = Moving { phase: &phase[rows.clone()], start, remainder: &remainder[rows] };
+                let (phase, inverse_mass) = (&phase[rows.clone()], &inverse_mass[rows.clone()]);
+                let plain = are_plain(phase, inverse_mass);
+                match common(rows.clone()).filter(|_| plain) {
+                    Some(pull) => velocity.iter_mut().for_each(|velocity| *velocity += pull),
+                    None => accelerate(velocity, inverse_mass, |k| pull(first + k)),
+                }
+                let moving = Moving { phase, start, remainder: &remainder[rows], plain };
                 moving.shift(displacement, position, |k, _| velocity[k] * dt);
             },
         );
     }
+}
+
+/// Whether no row is smoke or moved by a script: then a loop over them needs no branch and fills the vectors of the
+/// machine. No early return here, for the same reason.
+#[inline(always)]
+fn are_plain(phase: &[Phase], inverse_mass: &[Real]) -> bool {
+    let smoke = phase.iter().fold(false, |any, &phase| any | (phase == Phase::Smoke));
+    !inverse_mass.iter().fold(smoke, |any, &inverse_mass| any | (inverse_mass == 0.0))
 }
 
 /// Adds to the velocities of what has inertia.
@@ -72,6 +91,8 @@ struct Moving<'a> {
     phase: &'a [Phase],
     start: &'a [Vector],
     remainder: &'a [Vector],
+    /// As [`are_plain`] says.
+    plain: bool,
 }
 
 impl Moving<'_> {
@@ -81,11 +102,14 @@ impl Moving<'_> {
         let rows = displacement.len();
         let (phase, start, remainder) = (&self.phase[..rows], &self.start[..rows], &self.remainder[..rows]);
         let position = &mut position[..rows];
-        for k in 0..rows {
-            if phase[k] != Phase::Smoke {
-                displacement[k] = new(k, displacement[k]);
-                position[k] = start[k] + (displacement[k] + remainder[k]);
-            }
+        let mut shift = |k: usize| {
+            displacement[k] = new(k, displacement[k]);
+            position[k] = start[k] + (displacement[k] + remainder[k]);
+        };
+        if self.plain {
+            (0..rows).for_each(shift);
+        } else {
+            (0..rows).filter(|&k| phase[k] != Phase::Smoke).for_each(&mut shift);
         }
     }
 
@@ -110,11 +134,16 @@ pub(super) fn apply(particles: &mut Particles, corrections: &Corrections, walls:
             let rows = band + first..band + first + displacement.len();
             let (inverse_mass, steps) = (&inverse_mass[rows.clone()], &steps[rows.clone()]);
             let (start, remainder) = (&start[rows.clone()], &remainder[rows.clone()]);
-            let moving = Moving { phase: &phase[rows], start, remainder };
-            moving.shift(displacement, position, |k, displacement| match inverse_mass[k] {
-                0.0 => displacement,
-                _ => displacement + steps[k],
-            });
+            let plain = are_plain(&phase[rows.clone()], inverse_mass);
+            let moving = Moving { phase: &phase[rows], start, remainder, plain };
+            if plain {
+                moving.shift(displacement, position, |k, displacement| displacement + steps[k]);
+            } else {
+                moving.shift(displacement, position, |k, displacement| match inverse_mass[k] {
+                    0.0 => displacement,
+                    _ => displacement + steps[k],
+                });
+            }
             if walls.is_empty() {
                 return;
             }
@@ -204,10 +233,14 @@ pub(super) fn update_velocities(particles: &mut Particles, dt: Real, periodic: P
             let (phase, inverse_mass) = (&phase[rows.clone()], &inverse_mass[rows.clone()]);
             let (displacement, start) = (&displacement[rows.clone()], &start[rows.clone()]);
             let (position, remainder) = (&position[rows], &mut remainder[..velocity.len()]);
-            for k in 0..velocity.len() {
-                if phase[k] == Phase::Smoke {
-                    continue;
+            if are_plain(phase, inverse_mass) {
+                for k in 0..velocity.len() {
+                    velocity[k] = displacement[k] * inverse_dt;
+                    remainder[k] = left_over(displacement[k], remainder[k], position[k] - start[k]);
                 }
+                return;
+            }
+            for k in (0..velocity.len()).filter(|&k| phase[k] != Phase::Smoke) {
                 if inverse_mass[k] > 0.0 {
                     velocity[k] = displacement[k] * inverse_dt;
                 }

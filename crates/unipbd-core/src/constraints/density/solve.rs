@@ -4,7 +4,7 @@ use super::{Density, DensityMaterial};
 use crate::constraints::{Corrections, Substep};
 use crate::math::{Real, Vector, larger, smaller, wide};
 use crate::parallel::CHUNK_ROWS;
-use crate::phase::{MaterialIndex, Phase};
+use crate::phase::{Phase, uniform};
 use crate::simd::near::{self, Near, Work};
 use crate::simd::space::{Open, Space, Wrapped};
 use crate::simd::weigh::{At, Weighed};
@@ -85,9 +85,14 @@ impl Density {
         // The pressures that are believed accelerate to this speed at most (Bernoulli): what a step too
         // long for them makes of a crushed heap ends there.
         let farthest = (2.0 * now.pressure_limit).sqrt() * now.dt;
-        now.parallelism.update(&mut out.displacements_mut()[..rows], |i, displacement| {
-            let step = inverse_masses[i] * (sums[i] * volume + walls[i] * steps[i]);
-            *displacement -= step.clamp_length_max(farthest);
+        now.parallelism.chunks(&mut out.displacements_mut()[..rows], |first, displacements| {
+            let rows = first..first + displacements.len();
+            let (sums, walls) = (&sums[rows.clone()], &walls[rows.clone()]);
+            let (steps, inverse_masses) = (&steps[rows.clone()], &inverse_masses[rows]);
+            for k in 0..displacements.len() {
+                let step = inverse_masses[k] * (sums[k] * volume + walls[k] * steps[k]);
+                displacements[k] -= at_most(step, farthest);
+            }
         });
     }
 
@@ -306,10 +311,12 @@ impl Relaxed<'_> {
     }
 }
 
-/// The material of all rows, if they have but one.
-fn uniform(materials: &[MaterialIndex]) -> Option<MaterialIndex> {
-    let (&first, rest) = materials.split_first()?;
-    rest.iter().all(|&material| material == first).then_some(first)
+/// A step, cut to a length. Without a branch, so that rows fill the vectors of the machine.
+#[inline(always)]
+fn at_most(step: Vector, length: Real) -> Vector {
+    let square = step.length_squared();
+    let cut = length * (step / square.sqrt());
+    if square > length * length { cut } else { step }
 }
 
 impl DensityMaterial {
