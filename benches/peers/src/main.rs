@@ -15,7 +15,7 @@ use case::{Case, Outcome};
 use rigid::{Kind, Settled};
 
 /// Target compressions that unipbd tries, the loosest first.
-const TARGETS: [f64; 6] = [0.1, 0.03, 0.01, 0.006, 0.003, 0.001];
+const TARGETS: [f64; 8] = [0.1, 0.03, 0.02, 0.01, 0.006, 0.005, 0.003, 0.001];
 
 fn option(name: &str, default: &str) -> String {
     let arguments: Vec<String> = std::env::args().collect();
