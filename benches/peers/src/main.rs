@@ -1,7 +1,7 @@
 //! unipbd beside other solvers, in one run: `benches/peers.sh` prepares all of them and starts this.
 //!
 //! `unipbd-peers [--particles 5000,20000] [--seconds 2] [--bodies 5000] [--rows 100] [--only liquids|bodies] [--pbf yes]
-//! [--radius 3,2] [--peers dfsph,salva,taichi]`
+//! [--radius 3,2] [--peers dfsph,salva,taichi] [--substeps 4x1,3x2]`
 
 mod case;
 mod chart;
@@ -120,10 +120,12 @@ fn bodies_tables() {
     let count: usize = option("--bodies", "5000").parse().expect("--bodies takes a number");
     let rows: usize = option("--rows", "100").parse().expect("--rows takes a number");
     let seconds: f64 = option("--settle", "5").parse().expect("--settle takes a number");
+    let substeps = option("--substeps", "1,2,4");
+    let substeps: Vec<u32> = substeps.split(',').map(|n| n.parse().expect("--substeps takes numbers")).collect();
     println!("## {count} bodies of 0.5 m settle, {seconds} s\n");
     println!("| bodies | solver | substeps | processor time per frame [ms] | penetration [m] |\n|---|---|---|---|---|");
     for (name, kind) in [("discs", Kind::Discs), ("boxes", Kind::Boxes)] {
-        for (substeps, of) in rigid::settle(kind, count, seconds, &[1, 2, 4]) {
+        for (substeps, of) in rigid::settle(kind, count, seconds, &substeps) {
             let Settled { solver, milliseconds, penetration, .. } = of;
             println!("| {name} | {solver} | {substeps} | {milliseconds:.2} | {penetration:.4} |");
         }
