@@ -1,7 +1,7 @@
 //! A Jacobi sweep over contacts: each computes its push from the same state into its own slot, then
 //! each body gathers its pushes in the order of the contacts. The same bits on any number of threads.
 
-use super::manifold::Contact;
+use super::manifold::{Contact, Site};
 use super::pieces::NONE;
 use crate::bodies::{Response, Twist};
 use crate::math::Vector64;
@@ -48,7 +48,7 @@ impl Jacobi {
         }
         self.starts.clear();
         self.starts.resize(bodies + 1, 0);
-        let sides = || contacts.iter().zip(0u32..).flat_map(|(c, k)| [(c.who.a, 2 * k), (c.who.b, 2 * k + 1)]);
+        let sides = || contacts.iter().zip(0u32..).flat_map(|(c, k)| [(c.a, 2 * k), (c.b, 2 * k + 1)]);
         for (body, _) in sides().filter(|&(body, _)| body != NONE) {
             self.starts[body as usize + 1] += 1;
         }
@@ -66,24 +66,29 @@ impl Jacobi {
     }
 
     /// Evaluates `rule` for every contact from one state, then sums the pushes by body.
-    pub fn sweep(&mut self, contacts: &mut [Contact], bodies: usize, rule: impl Fn(&mut Contact) -> Push + Sync) {
+    pub fn sweep(
+        &mut self,
+        (contacts, sites): (&mut [Contact], &mut [Site]),
+        bodies: usize,
+        rule: impl Fn(&mut Contact, &mut Site) -> Push + Sync,
+    ) {
         self.sums.clear();
         self.sums.resize(bodies, Twist::ZERO);
         if !is_parallel(contacts) {
-            for contact in contacts {
-                let push = rule(contact);
-                self.sums[contact.who.a as usize] += push.on_a();
-                if contact.who.b != NONE {
-                    self.sums[contact.who.b as usize] -= push.on_b();
+            for (contact, site) in contacts.iter_mut().zip(sites) {
+                let push = rule(contact, site);
+                self.sums[contact.a as usize] += push.on_a();
+                if contact.b != NONE {
+                    self.sums[contact.b as usize] -= push.on_b();
                 }
             }
             return;
         }
         self.pushes.resize(contacts.len(), Push::default());
-        let slots = contacts.par_chunks_mut(CHUNK).zip(self.pushes.par_chunks_mut(CHUNK));
-        slots.for_each(|(contacts, pushes)| {
-            for (contact, push) in contacts.iter_mut().zip(pushes) {
-                *push = rule(contact);
+        let rows = contacts.par_chunks_mut(CHUNK).zip(sites.par_chunks_mut(CHUNK));
+        rows.zip(self.pushes.par_chunks_mut(CHUNK)).for_each(|((contacts, sites), pushes)| {
+            for ((contact, site), push) in contacts.iter_mut().zip(sites).zip(pushes) {
+                *push = rule(contact, site);
             }
         });
         self.gather();
@@ -113,5 +118,5 @@ impl Jacobi {
 }
 
 fn is_parallel(contacts: &[Contact]) -> bool {
-    contacts.len() >= PARALLEL_FROM
+    contacts.len() >= PARALLEL_FROM && rayon::current_num_threads() > 1
 }

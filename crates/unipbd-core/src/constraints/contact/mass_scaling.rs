@@ -16,7 +16,7 @@ pub(super) fn scale(contacts: &[Contact], bodies: &Bodies, up: Vector64, k: f64,
     let heap = heaps(contacts, bodies);
     let mut support = vec![f64::INFINITY; bodies.len()];
     for contact in contacts {
-        let (a, b) = (contact.who.a as usize, contact.who.b as usize);
+        let (a, b) = (contact.a as usize, contact.b as usize);
         let fixed = |id: usize| entry(&bodies.responses, id as u32) == Response::default();
         let resting = if fixed(b) {
             a
@@ -26,7 +26,7 @@ pub(super) fn scale(contacts: &[Contact], bodies: &Bodies, up: Vector64, k: f64,
             continue;
         };
         for point in contact.points() {
-            let height = (bodies.poses[a].position + point.arm_a).dot(up);
+            let height = (bodies.poses[a].position + contact.arm_a(point)).dot(up);
             support[heap[resting]] = support[heap[resting]].min(height);
         }
     }
@@ -48,8 +48,8 @@ fn heaps(contacts: &[Contact], bodies: &Bodies) -> Vec<usize> {
     let mut touching = Forest::default();
     touching.reset(bodies.len());
     let movable = |id: u32| entry(&bodies.responses, id) != Response::default();
-    for contact in contacts.iter().filter(|contact| movable(contact.who.a) && movable(contact.who.b)) {
-        touching.unite(contact.who.a, contact.who.b);
+    for contact in contacts.iter().filter(|contact| movable(contact.a) && movable(contact.b)) {
+        touching.unite(contact.a, contact.b);
     }
     (0..bodies.len() as u32).map(|id| touching.root(id) as usize).collect()
 }

@@ -22,7 +22,9 @@ mod joint;
 mod manifold;
 mod mass_scaling;
 mod narrow;
+mod pairs;
 mod pieces;
+mod search;
 mod sleep;
 
 pub use crate::scene::ContactMethod;
@@ -32,10 +34,10 @@ pub use sleep::SleepSettings;
 use crate::bodies::{Bodies, Response, Twist};
 use crate::math::Vector64;
 use crate::shapes::Wall;
-use find::Finder;
+use find::{Finder, Moment};
 use jacobi::Jacobi;
 use joint::Linked;
-use manifold::{Contact, entry};
+use manifold::{Contact, Site, entry};
 use pieces::NONE;
 use sleep::Islands;
 
@@ -180,26 +182,23 @@ impl Contacts {
         self.up = -gravity.normalize_or_zero();
         self.islands.resize(bodies.len());
         self.islands.wake_pushed(bodies);
+        let kept = if self.settings.method == ContactMethod::Split { self.warm_factor } else { 0.0 };
+        let moment = Moment { dt, gravity: self.gravity, kept, slow: 2.0 * self.gravity * dt };
         loop {
-            self.finder.find(bodies, dt, self.gravity);
+            self.finder.find(bodies, &moment);
             if !self.islands.wake_touched(bodies, self.finder.candidates(), &self.joints, dt) {
                 break;
             }
         }
-        let kept = if self.settings.method == ContactMethod::Split { self.warm_factor } else { 0.0 };
-        self.finder.keep_impulses(kept, dt * dt);
-        let slow = 2.0 * self.gravity * dt;
-        for contact in self.finder.contacts_mut() {
-            contact.note_velocities(&bodies.velocities, slow);
-        }
+        self.finder.adopt();
     }
 
     /// Shares each body among its contacts and applies the impulses kept from the last substep.
     pub fn warm_start(&mut self, bodies: &mut Bodies) {
         self.split_masses(bodies);
-        let (contacts, split) = (self.finder.contacts_mut(), &self.split);
-        self.jacobi.index(contacts, bodies.len());
-        self.jacobi.sweep(contacts, bodies.len(), |contact| {
+        self.jacobi.index(self.finder.contacts(), bodies.len());
+        let split = &self.split;
+        self.jacobi.sweep(self.finder.rows(), bodies.len(), |contact, _| {
             contact.prepare(split);
             contact.kept_push()
         });
@@ -221,10 +220,10 @@ impl Contacts {
             }
         };
         for contact in self.finder.contacts() {
-            let near = 1e-3 * bodies.sizes[contact.who.a as usize];
+            let near = 1e-3 * bodies.sizes[contact.a as usize];
             if contact.is_pressed() || contact.gap_after(&bodies.displacements, 1.0) < near {
-                count(contact.who.a);
-                count(contact.who.b);
+                count(contact.a);
+                count(contact.b);
             }
         }
         for (a, b) in self.joints.iter().map(Linked::bodies) {
@@ -245,12 +244,12 @@ impl Contacts {
     /// One Jacobi iteration of all contacts and joints on the displacements.
     pub fn iterate(&mut self, bodies: &mut Bodies) {
         let displacements = &bodies.displacements;
-        let contacts = self.finder.contacts_mut();
+        let rows = self.finder.rows();
         match self.settings.method {
-            ContactMethod::Split => self.jacobi.sweep(contacts, bodies.len(), |contact| contact.solve(displacements)),
-            ContactMethod::Averaged => {
-                self.jacobi.sweep(contacts, bodies.len(), |contact| contact.solve_positions(displacements));
-            }
+            ContactMethod::Split => self.jacobi.sweep(rows, bodies.len(), |contact, _| contact.solve(displacements)),
+            ContactMethod::Averaged => self
+                .jacobi
+                .sweep(rows, bodies.len(), |contact, site| contact.solve_positions(&site.surface, displacements)),
         }
         for linked in self.joints.iter_mut().filter(|linked| is_movable(linked, bodies)) {
             let pushes = linked.solve(&bodies.displacements);
@@ -270,12 +269,13 @@ impl Contacts {
     /// Lets contacts rebound that were hit faster than gravity alone would in two substeps.
     pub fn restitute(&mut self, bodies: &mut Bodies) {
         let (dt, slowest) = (self.dt, 2.0 * self.gravity * self.dt);
-        if self.finder.contacts().iter().any(|contact| contact.rebounds(slowest)) {
+        let mut rows = self.finder.contacts().iter().zip(self.finder.sites());
+        if rows.any(|(contact, site)| contact.rebounds(site, slowest)) {
             for _ in 0..self.settings.restitution_iterations {
                 let velocities = &bodies.velocities;
-                self.jacobi.sweep(self.finder.contacts_mut(), bodies.len(), |contact| {
-                    if contact.rebounds(slowest) {
-                        contact.rebound(velocities, dt, slowest)
+                self.jacobi.sweep(self.finder.rows(), bodies.len(), |contact, site| {
+                    if contact.rebounds(site, slowest) {
+                        contact.rebound(site, velocities, dt, slowest)
                     } else {
                         Default::default()
                     }
@@ -291,11 +291,12 @@ impl Contacts {
 
     /// Adds the impulses of the substep to the walls they act on.
     fn load_walls(&mut self) {
-        for contact in self.finder.contacts().iter().filter(|contact| contact.who.wall != NONE) {
-            for point in contact.points() {
-                let normal = contact.normal * (point.normal_impulse / self.dt + point.rebound);
+        let rows = self.finder.contacts().iter().zip(self.finder.sites());
+        for (contact, site) in rows.filter(|(_, site)| site.wall != NONE) {
+            for (point, rebound) in contact.points().iter().zip(site.rebound) {
+                let normal = contact.normal * (point.normal_impulse / self.dt + rebound);
                 let tangent = contact.normal.perp() * (point.tangent_impulse / self.dt);
-                self.wall_impulses[contact.who.wall as usize] -= normal + tangent;
+                self.wall_impulses[site.wall as usize] -= normal + tangent;
             }
         }
     }
@@ -304,9 +305,9 @@ impl Contacts {
     pub fn depenetrate(&mut self, bodies: &mut Bodies) {
         let (how, dt) = (&self.settings.depenetration, self.dt);
         let (displacements, sizes) = (&bodies.displacements, &bodies.sizes);
-        self.jacobi.sweep(self.finder.contacts_mut(), bodies.len(), |contact| {
-            let size = sizes[contact.who.a as usize];
-            let size = if contact.who.b == NONE { size } else { size.min(sizes[contact.who.b as usize]) };
+        self.jacobi.sweep(self.finder.rows(), bodies.len(), |contact, _| {
+            let size = sizes[contact.a as usize];
+            let size = if contact.b == NONE { size } else { size.min(sizes[contact.b as usize]) };
             contact.separate(displacements, how, size, dt)
         });
         for linked in self.joints.iter_mut().filter(|linked| is_movable(linked, bodies)) {
@@ -359,20 +360,20 @@ impl Contacts {
     /// The contacts of the last substep between bodies that were awake.
     pub fn points(&self) -> impl Iterator<Item = ContactPoint> + '_ {
         let index = |index: u32| (index != NONE).then_some(index);
-        let read = move |contact: &Contact, k: usize| {
+        let read = move |contact: &Contact, site: &Site, k: usize| {
             let point = &contact.points()[k];
             ContactPoint {
-                body: contact.who.a,
-                other: index(contact.who.b),
-                wall: index(contact.who.wall),
+                body: contact.a,
+                other: index(contact.b),
+                wall: index(site.wall),
                 normal: contact.normal,
                 gap: point.gap,
-                normal_force: point.normal_impulse / (self.dt * self.dt) + point.rebound / self.dt,
+                normal_force: point.normal_impulse / (self.dt * self.dt) + site.rebound[k] / self.dt,
                 friction_force: point.tangent_impulse / (self.dt * self.dt),
             }
         };
-        let points = |contact: &Contact| 0..contact.points().len();
-        self.finder.contacts().iter().flat_map(move |contact| points(contact).map(move |k| read(contact, k)))
+        let rows = self.finder.contacts().iter().zip(self.finder.sites());
+        rows.flat_map(move |(contact, site)| (0..contact.points().len()).map(move |k| read(contact, site, k)))
     }
 
     /// Joints with the force on the first body [N] and the torque of the motor [N m] in the last substep.

@@ -5,7 +5,7 @@
 //! unrounded cores overlap (deep starts), vertices would pull in all directions: convex solids are then
 //! parted over a single face. In a piece cut from a concave solid that face may be the wrong way out.
 
-use super::pieces::{HalfPlane, PieceView};
+use super::pieces::{HalfPlane, PieceView, Pieces};
 use crate::math::Vector64;
 
 /// A place where two pieces touch or soon may.
@@ -19,37 +19,63 @@ pub(super) struct Touch {
     pub on_b: Vector64,
     /// Distance of the surfaces along the normal, negative when they overlap [m].
     pub gap: f64,
-    /// Names the vertex that touches: for recognising the contact in the next substep.
-    pub feature: u32,
+    pub place: Place,
+}
+
+/// What touches: names a point for recognising it in the next substep, and for measuring it again there.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Place {
+    /// The vertex that touches, with [`OF_SECOND`] where it is one of the second piece.
+    pub vertex: u32,
+    /// The face of the other piece it lies over, or the vertex it is closest to, with [`VERTEX`].
+    on: u32,
 }
 
 /// Marks a vertex of the second piece.
 const OF_SECOND: u32 = 1 << 31;
+/// Marks a vertex in place of a face.
+const VERTEX: u32 = 1 << 31;
+
+/// How long what was found stays so.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Finding {
+    /// Farther apart than the margin.
+    Apart,
+    /// The same vertices and faces touch while the pieces hardly move.
+    Near,
+    /// Cores overlap: which way out is to be asked again.
+    Deep,
+}
 
 /// Contacts of a piece with a half-plane.
 pub(super) fn against_half_plane(a: &PieceView, plane: &HalfPlane, margin: f64, out: &mut Vec<Touch>) {
     for (k, &p) in a.vertices.iter().enumerate().filter(|&(k, _)| a.sampled[k]) {
-        let height = (p - plane.point).dot(plane.normal);
-        let gap = height - a.radius;
-        if gap < margin {
-            let (normal, on_a, on_b) = (plane.normal, p - plane.normal * a.radius, p - plane.normal * height);
-            out.push(Touch { normal, on_a, on_b, gap, feature: k as u32 });
+        let touch = on_half_plane(a, plane, p, k as u32);
+        if touch.gap < margin {
+            out.push(touch);
         }
     }
 }
 
+fn on_half_plane(a: &PieceView, plane: &HalfPlane, p: Vector64, vertex: u32) -> Touch {
+    let height = (p - plane.point).dot(plane.normal);
+    let (normal, on_a, on_b) = (plane.normal, p - plane.normal * a.radius, p - plane.normal * height);
+    Touch { normal, on_a, on_b, gap: height - a.radius, place: Place { vertex, on: 0 } }
+}
+
 /// Contacts of two pieces with gaps below `margin`.
-pub(super) fn between(a: &PieceView, b: &PieceView, margin: f64, out: &mut Vec<Touch>) {
+pub(super) fn between(a: &PieceView, b: &PieceView, margin: f64, out: &mut Vec<Touch>) -> Finding {
     let radii = a.radius + b.radius;
     let mut overlap = false;
     if !a.is_round() && !b.is_round() {
         let (Some(of_b), Some(of_a)) = (separation(a, b, radii + margin), separation(b, a, radii + margin)) else {
-            return;
+            return Finding::Apart;
         };
         overlap = of_a.max(of_b) < 0.0;
     }
     if overlap && a.is_whole() && b.is_whole() {
-        return overlapping_cores(a, b, out);
+        overlapping_cores(a, b, out);
+        return Finding::Deep;
     }
     let over_b = vertices_on_faces(a, b, margin, out, |touch| touch);
     let over_a = vertices_on_faces(b, a, margin, out, Touch::reversed);
@@ -57,6 +83,48 @@ pub(super) fn between(a: &PieceView, b: &PieceView, margin: f64, out: &mut Vec<T
     if overlap && out.is_empty() {
         overlapping_cores(a, b, out);
     }
+    if overlap { Finding::Deep } else { Finding::Near }
+}
+
+/// Measures a place again that [`between`] found, where the pieces are now.
+pub(super) fn again(a: &PieceView, b: &PieceView, place: Place) -> Touch {
+    if place.vertex & OF_SECOND != 0 {
+        return again(b, a, Place { vertex: place.vertex ^ OF_SECOND, on: place.on }).reversed();
+    }
+    let (p, on) = (a.vertices[place.vertex as usize], (place.on & !VERTEX) as usize);
+    if place.on & VERTEX != 0 {
+        return at_vertices(a, b, p, b.vertices[on], place);
+    }
+    let normal = b.normals[on];
+    over_face(a, b, p, ((p - b.vertices[on]).dot(normal), normal), place)
+}
+
+/// The same against a half-plane.
+pub(super) fn again_on_half_plane(a: &PieceView, plane: &HalfPlane, place: Place) -> Touch {
+    on_half_plane(a, plane, a.vertices[place.vertex as usize], place.vertex)
+}
+
+/// The vertex `p` of `a` at a height over a face of `b` with this normal.
+fn over_face(a: &PieceView, b: &PieceView, p: Vector64, (height, normal): (f64, Vector64), place: Place) -> Touch {
+    let (on_a, on_b) = (p - normal * a.radius, p - normal * (height - b.radius));
+    Touch { normal, on_a, on_b, gap: height - a.radius - b.radius, place }
+}
+
+/// The vertex `p` of `a` and `q` of `b`.
+fn at_vertices(a: &PieceView, b: &PieceView, p: Vector64, q: Vector64, place: Place) -> Touch {
+    let distance = (p - q).length();
+    let normal = if distance > 0.0 { (p - q) / distance } else { Vector64::Y };
+    let (on_a, on_b) = (p - normal * a.radius, q + normal * b.radius);
+    Touch { normal, on_a, on_b, gap: distance - a.radius - b.radius, place }
+}
+
+/// Contact of two discs, if their gap is below `margin`.
+pub(super) fn discs(pieces: &Pieces, (a, b): (u32, u32), margin: f64) -> Option<Touch> {
+    let ((p, radius_a), (q, radius_b)) = (pieces.disc(a), pieces.disc(b));
+    let (distance, radii) = ((p - q).length(), radius_a + radius_b);
+    let normal = if distance > 0.0 { (p - q) / distance } else { Vector64::Y };
+    let (on_a, on_b, place) = (p - normal * radius_a, q + normal * radius_b, Place { vertex: 0, on: VERTEX });
+    (distance < radii + margin).then_some(Touch { normal, on_a, on_b, gap: distance - radii, place })
 }
 
 impl Touch {
@@ -67,7 +135,7 @@ impl Touch {
             on_a: self.on_b,
             on_b: self.on_a,
             gap: self.gap,
-            feature: self.feature ^ OF_SECOND,
+            place: Place { vertex: self.place.vertex ^ OF_SECOND, on: self.place.on },
         }
     }
 }
@@ -108,12 +176,12 @@ fn vertices_on_faces(
         let tangent = normal.perp();
         let (along, length) = ((p - from).dot(tangent), (to - from).dot(tangent));
         let gap = height - radii;
-        let over_face = along >= -overhang && along <= length + overhang;
+        let is_over = along >= -overhang && along <= length + overhang;
         let known = |touch: &Touch| ((touch.on_a + touch.on_b) * 0.5 - p).dot(tangent).abs() < 0.5 * radii;
-        over |= u64::from(over_face) << (k % 64);
-        if over_face && gap < margin && !out.iter().any(known) {
-            let (on_a, on_b) = (p - normal * a.radius, p - normal * (height - b.radius));
-            out.push(named(Touch { normal, on_a, on_b, gap, feature: k as u32 }));
+        over |= u64::from(is_over) << (k % 64);
+        if is_over && gap < margin && !out.iter().any(known) {
+            let place = Place { vertex: k as u32, on: face as u32 };
+            out.push(named(over_face(a, b, p, (height, normal), place)));
         }
     }
     over
@@ -149,14 +217,16 @@ fn closest_vertices(a: &PieceView, b: &PieceView, over: (u64, u64), margin: f64,
         }
     }
     let Some((square, i, j)) = best else { return };
-    let (p, q, distance) = (a.vertices[i], b.vertices[j], square.sqrt());
-    let gap = distance - a.radius - b.radius;
+    let (p, q) = (a.vertices[i], b.vertices[j]);
     let reach = a.radius + b.radius;
     let known = |touch: &Touch| (touch.on_a - p).length_squared() < reach * reach;
-    if gap < margin && !out.iter().any(known) {
-        let normal = if distance > 0.0 { (p - q) / distance } else { Vector64::Y };
-        let feature = if b.is_round() && !a.is_round() { j as u32 | OF_SECOND } else { i as u32 };
-        out.push(Touch { normal, on_a: p - normal * a.radius, on_b: q + normal * b.radius, gap, feature });
+    if square.sqrt() - reach < margin && !out.iter().any(known) {
+        // A disc has one vertex: the corner of the other is the better name.
+        out.push(if b.is_round() && !a.is_round() {
+            at_vertices(b, a, q, p, Place { vertex: j as u32, on: i as u32 | VERTEX }).reversed()
+        } else {
+            at_vertices(a, b, p, q, Place { vertex: i as u32, on: j as u32 | VERTEX })
+        });
     }
 }
 
@@ -170,8 +240,8 @@ fn overlapping_cores(a: &PieceView, b: &PieceView, out: &mut Vec<Touch>) {
         for (k, &p) in a.vertices.iter().enumerate() {
             let height = (p - from).dot(normal);
             if height < radii {
-                let (on_a, on_b) = (p - normal * a.radius, p - normal * (height - b.radius));
-                out.push(named(Touch { normal, on_a, on_b, gap: height - radii, feature: k as u32 }));
+                let place = Place { vertex: k as u32, on: face as u32 };
+                out.push(named(over_face(a, b, p, (height, normal), place)));
             }
         }
     };

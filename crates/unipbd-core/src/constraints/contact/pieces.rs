@@ -28,6 +28,11 @@ impl Bounds {
             && other.low.y <= self.high.y
     }
 
+    /// How far apart two boxes are along the axis that parts them most; negative where they overlap [m].
+    pub fn distance(&self, other: &Bounds) -> f64 {
+        (self.low - other.high).max(other.low - self.high).max_element()
+    }
+
     pub fn holds(&self, other: &Bounds) -> bool {
         self.low.x <= other.low.x
             && self.low.y <= other.low.y
@@ -127,9 +132,9 @@ impl Pieces {
         pieces
     }
 
-    /// Appends the pieces of bodies that were added since the last call; tells whether there were any.
-    pub fn append_bodies(&mut self, bodies: &Bodies) -> bool {
-        let known = self.known_bodies;
+    /// Appends the pieces of bodies that were added since the last call; tells how many there were.
+    pub fn append_bodies(&mut self, bodies: &Bodies) -> usize {
+        let (known, pieces) = (self.known_bodies, self.all.len());
         for id in known..bodies.len() {
             let view = &bodies.views()[id];
             let owner = Piece {
@@ -146,7 +151,7 @@ impl Pieces {
             self.place_last(&bodies.poses[id]);
         }
         self.known_bodies = bodies.len();
-        known < bodies.len()
+        self.all.len() - pieces
     }
 
     fn append(&mut self, core: &Core, owner: &Piece) {
@@ -172,22 +177,29 @@ impl Pieces {
 
     /// Moves the pieces of bodies that can have moved.
     pub fn update(&mut self, bodies: &Bodies) {
-        let (mut last, mut moving, mut rotation) = (NONE, false, Vector64::X);
+        let (mut turned, mut rotation) = (NONE, Vector64::X);
         for index in 0..self.all.len() {
-            let body = self.all[index].body;
-            if body == NONE {
+            let Piece { body, first, count, .. } = self.all[index];
+            if body == NONE || !bodies.is_active(body as usize) {
                 continue;
             }
-            if body != last {
-                (last, moving) = (body, bodies.is_active(body as usize));
-                if moving {
-                    rotation = Vector64::from_angle(bodies.poses[body as usize].angle);
-                }
+            let pose = &bodies.poses[body as usize];
+            let looks_the_same = count == 1 && self.local[first as usize].place == Vector64::ZERO;
+            if !looks_the_same && turned != body {
+                (turned, rotation) = (body, Vector64::from_angle(pose.angle));
             }
-            if moving {
-                self.place(index, &bodies.poses[body as usize], rotation);
-            }
+            self.place(index, pose, rotation);
         }
+    }
+
+    /// The body a piece belongs to; half-planes and walls have none.
+    pub fn body_of(&self, piece: u32) -> u32 {
+        self.all.get(piece as usize).map_or(NONE, |piece| piece.body)
+    }
+
+    /// The half-plane of this index among pieces, which come first.
+    pub fn half_plane(&self, piece: u32) -> Option<&HalfPlane> {
+        (piece as usize).checked_sub(self.all.len()).map(|k| &self.half_planes[k])
     }
 
     fn place(&mut self, index: usize, pose: &Pose, rotation: Vector64) {
@@ -200,6 +212,12 @@ impl Pieces {
             bounds = Bounds { low: bounds.low.min(place), high: bounds.high.max(place) };
         }
         self.bounds[index] = bounds.grown(piece.radius);
+    }
+
+    /// First vertex of a piece [m], and its radius.
+    pub fn disc(&self, index: u32) -> (Vector64, f64) {
+        let piece = &self.all[index as usize];
+        (self.vertices[piece.first as usize], piece.radius)
     }
 
     pub fn view(&self, index: u32) -> PieceView<'_> {

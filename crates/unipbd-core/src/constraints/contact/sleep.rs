@@ -53,6 +53,9 @@ impl Islands {
     /// Wakes the islands that a moving body touches in this substep; tells whether there were any.
     pub fn wake_touched(&mut self, bodies: &mut Bodies, contacts: &[Contact], joints: &[Linked], dt: f64) -> bool {
         let mut woken = false;
+        if !bodies.asleep.contains(&true) {
+            return false;
+        }
         let mut touch = |islands: &mut Islands, bodies: &mut Bodies, a: u32, b: u32| {
             for (moving, still) in [(a, b), (b, a)] {
                 if still != NONE && bodies.asleep[still as usize] && bodies.is_active(moving as usize) {
@@ -61,8 +64,8 @@ impl Islands {
                 }
             }
         };
-        for contact in contacts.iter().filter(|contact| contact.who.b != NONE) {
-            let (a, b) = (contact.who.a, contact.who.b);
+        for contact in contacts.iter().filter(|contact| contact.b != NONE) {
+            let (a, b) = (contact.a, contact.b);
             let asleep = bodies.asleep[a as usize] || bodies.asleep[b as usize];
             if asleep && contact.gap_after(&bodies.velocities, dt) < 1e-3 * bodies.sizes[a as usize] {
                 touch(self, bodies, a, b);
@@ -112,8 +115,7 @@ impl Islands {
 
     fn unite_touching(&mut self, bodies: &Bodies, contacts: &[Contact], joints: &[Linked]) {
         self.touching.reset(bodies.len());
-        let touching =
-            contacts.iter().filter(|contact| contact.is_pressed()).map(|contact| (contact.who.a, contact.who.b));
+        let touching = contacts.iter().filter(|contact| contact.is_pressed()).map(|contact| (contact.a, contact.b));
         for (a, b) in touching.chain(joints.iter().map(Linked::bodies)).filter(|&(_, b)| b != NONE) {
             self.unite(bodies, a, b);
         }

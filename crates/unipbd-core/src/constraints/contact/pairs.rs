@@ -1,0 +1,266 @@
+//! The pairs of pieces that may touch, sought anew only when a piece can have left the box it was sought with.
+
+use super::broad;
+use super::manifold::entry;
+use super::pieces::{Bounds, NONE, Pieces};
+use crate::bodies::{Bodies, Pose, Surface};
+
+/// Two pieces, or a piece and a half-plane, that may touch.
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+pub(super) struct Pair {
+    /// Both by increasing index, which pairs are sorted by.
+    key: (u32, u32),
+    /// The piece whose body is the first of a contact, and the other.
+    pub pieces: (u32, u32),
+    /// Their bodies; the second is `NONE` for a wall.
+    pub bodies: (u32, u32),
+    pub wall: u32,
+    pub kind: Kind,
+    pub surface: Surface,
+    pub rolling_arm: f64,
+    /// Gap below which contacts are kept beside what speed demands [m].
+    pub near: f64,
+    /// How far the pieces may move before what touches is sought anew [m].
+    pub slack: f64,
+}
+
+/// What meets.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(super) enum Kind {
+    /// Two discs.
+    Discs,
+    /// A disc and a half-plane.
+    DiscOnPlane,
+    /// Any other piece and a half-plane.
+    OnPlane,
+    /// Two pieces that are not both discs.
+    Pieces,
+}
+
+/// The contacts of a pair in the last substep, or those it fell asleep with.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Span {
+    pub first: u32,
+    pub count: u32,
+    pub frozen: bool,
+}
+
+impl Span {
+    pub fn range(&self) -> std::ops::Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
+    }
+}
+
+/// When what touches in a pair was sought, in terms of motion.
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
+pub(super) struct Sought {
+    /// How far both had come by then [m].
+    pub way: f64,
+    /// Gap below which contacts were found [m].
+    pub margin: f64,
+    /// How far they may move until it is no longer known what touches [m].
+    pub room: f64,
+}
+
+impl Sought {
+    pub const NEVER: Sought = Sought { way: 0.0, margin: f64::NEG_INFINITY, room: f64::NEG_INFINITY };
+}
+
+/// All pairs that may touch, and how far bodies can and did move.
+#[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Pairs {
+    excluded: Vec<(u32, u32)>,
+    /// Boxes within which pieces may move before pairs are sought anew.
+    fat: Vec<Bounds>,
+    pub all: Vec<Pair>,
+    pub spans: Vec<Span>,
+    pub sought: Vec<Sought>,
+    /// Pairs of which a body can move.
+    pub active: Vec<u32>,
+    /// Which bodies could move when `active` was listed.
+    was_active: Vec<bool>,
+    /// Twice the distance each body can go in the substep on its own [m].
+    own_reach: Vec<f64>,
+    /// The same for it or any body near it, which may hit it.
+    pub reach: Vec<f64>,
+    /// Length of the way that the fastest point of each body has come, at most [m].
+    pub ways: Vec<f64>,
+    last_poses: Vec<Pose>,
+}
+
+impl Pairs {
+    /// Two bodies that no longer collide with each other.
+    pub fn exclude(&mut self, a: u32, b: u32) {
+        self.excluded.push((a.min(b), a.max(b)));
+        self.excluded.sort_unstable();
+        self.fat.clear();
+    }
+
+    /// Half-planes come after all pieces: their indices grow with the number of those.
+    pub fn renumber(&mut self, pieces: &Pieces, added: usize) {
+        let first = (pieces.all.len() - added) as u32;
+        for pair in self.all.iter_mut().filter(|pair| added > 0 && pair.key.1 >= first) {
+            pair.key.1 += added as u32;
+            pair.pieces.1 += added as u32;
+        }
+    }
+
+    /// Makes the list hold all pairs that can touch in a substep of length `dt`.
+    pub fn update(&mut self, pieces: &Pieces, bodies: &Bodies, dt: f64, gravity: f64) {
+        self.follow(bodies);
+        self.estimate_reach(pieces, bodies, dt, gravity);
+        if !self.hold(pieces, bodies) {
+            self.pair_up(pieces, bodies);
+        } else if (0..bodies.len()).any(|id| self.was_active[id] != bodies.is_active(id)) {
+            self.list_active(bodies);
+        }
+    }
+
+    /// Adds to the ways what the bodies have moved since the last call.
+    fn follow(&mut self, bodies: &Bodies) {
+        self.ways.resize(bodies.len(), 0.0);
+        self.last_poses.extend_from_slice(&bodies.poses[self.last_poses.len()..]);
+        for (id, (last, pose)) in self.last_poses.iter_mut().zip(&bodies.poses).enumerate() {
+            let turned = (pose.angle - last.angle).abs() * bodies.reaches[id];
+            self.ways[id] += (pose.position - last.position).length() + turned;
+            *last = *pose;
+        }
+    }
+
+    /// A body near a faster one may be hit by it, and must see what is behind it as early.
+    fn estimate_reach(&mut self, pieces: &Pieces, bodies: &Bodies, dt: f64, gravity: f64) {
+        self.own_reach.clear();
+        self.own_reach.extend((0..bodies.len()).map(|id| {
+            let velocity = &bodies.velocities[id];
+            let speed = velocity.linear.length() + velocity.angular.abs() * bodies.reaches[id];
+            2.0 * (speed + gravity * dt) * dt
+        }));
+        let pairs = self.active.iter().map(|&index| self.all[index as usize].bodies);
+        spread_reach(&self.own_reach, pairs, &mut self.reach);
+        debug_assert!(pieces.all.len() >= self.fat.len());
+    }
+
+    /// Whether no piece can leave the box that pairs were sought with.
+    fn hold(&self, pieces: &Pieces, bodies: &Bodies) -> bool {
+        let moved = pieces.all.iter().zip(&pieces.bounds);
+        self.fat.len() == pieces.all.len()
+            && moved.zip(&self.fat).all(|((piece, bounds), fat)| {
+                piece.body == NONE
+                    || !bodies.is_active(piece.body as usize)
+                    || fat.holds(&bounds.grown(self.reach[piece.body as usize] + 0.01 * piece.size))
+            })
+    }
+
+    /// Seeks the pairs anew, with room for several substeps.
+    fn pair_up(&mut self, pieces: &Pieces, bodies: &Bodies) {
+        let mut found = self.seek(pieces, bodies);
+        // Bodies near a fast one move as far as it does, once hit: give them the same room.
+        let mut spread = Vec::new();
+        let of_bodies = found.iter().map(|&(a, b)| (pieces.body_of(a), pieces.body_of(b)));
+        spread_reach(&self.own_reach, of_bodies, &mut spread);
+        let lacking = (0..bodies.len()).any(|id| spread[id] > 2.0 * self.reach[id] + 0.01 * bodies.sizes[id]);
+        self.reach = spread;
+        if lacking {
+            found = self.seek(pieces, bodies);
+        }
+        self.replace(pieces, &found);
+        self.list_active(bodies);
+    }
+
+    /// Takes over these pairs; those that were known keep what is known of them.
+    fn replace(&mut self, pieces: &Pieces, found: &[(u32, u32)]) {
+        let (spans, sought) = (std::mem::take(&mut self.spans), std::mem::take(&mut self.sought));
+        let mut old = std::mem::take(&mut self.all).into_iter().zip(spans.into_iter().zip(sought)).peekable();
+        for &key in found {
+            while old.next_if(|(pair, _)| pair.key < key).is_some() {}
+            let known = old.next_if(|(pair, _)| pair.key == key);
+            let (pair, (span, sought)) =
+                known.unwrap_or_else(|| (Pair::new(pieces, key), (Span::default(), Sought::NEVER)));
+            self.all.push(pair);
+            self.spans.push(span);
+            self.sought.push(sought);
+        }
+    }
+
+    fn seek(&mut self, pieces: &Pieces, bodies: &Bodies) -> Vec<(u32, u32)> {
+        self.fat.clear();
+        self.fat.extend(pieces.all.iter().zip(&pieces.bounds).map(|(piece, bounds)| {
+            let reach = entry(&self.reach, piece.body);
+            if piece.body == NONE { *bounds } else { bounds.grown(4.0 * reach + 0.05 * piece.size) }
+        }));
+        broad::pairs(pieces, &self.fat, |a, b| may_touch(pieces, &self.excluded, bodies, a.min(b), a.max(b)))
+    }
+
+    fn list_active(&mut self, bodies: &Bodies) {
+        self.was_active.clear();
+        self.was_active.extend((0..bodies.len()).map(|id| bodies.is_active(id)));
+        let moving = |body: u32| body != NONE && self.was_active[body as usize];
+        let listed = self.all.iter().zip(0..).filter(|(pair, _)| moving(pair.bodies.0) || moving(pair.bodies.1));
+        self.active.clear();
+        self.active.extend(listed.map(|(_, index)| index));
+    }
+}
+
+impl Pair {
+    fn new(pieces: &Pieces, key: (u32, u32)) -> Pair {
+        // Pieces of walls come first: the body must be the first of the contact.
+        let (a, b) = if pieces.body_of(key.0) == NONE { (key.1, key.0) } else { key };
+        let piece = &pieces.all[a as usize];
+        let plane = pieces.half_plane(b);
+        let round = |piece: u32| pieces.view(piece).is_round();
+        let radius = |round: bool, radius: f64| if round { radius } else { f64::INFINITY };
+        let (surface, wall, size, rounding, rolling) = match plane {
+            Some(plane) => (&plane.surface, plane.wall, f64::INFINITY, 0.0, f64::INFINITY),
+            None => {
+                let other = &pieces.all[b as usize];
+                (&other.surface, other.wall, other.size, other.radius, radius(round(b), other.radius))
+            }
+        };
+        let surface = piece.surface.combined(surface);
+        let rolling = rolling.min(radius(round(a), piece.radius));
+        let kind = match (plane.is_some(), round(a), plane.is_none() && round(b)) {
+            (true, true, _) => Kind::DiscOnPlane,
+            (true, false, _) => Kind::OnPlane,
+            (false, true, true) => Kind::Discs,
+            _ => Kind::Pieces,
+        };
+        let least = |rounding: f64, round: bool| if round { f64::INFINITY } else { rounding };
+        let rounding = if plane.is_some() { f64::INFINITY } else { least(rounding, round(b)) };
+        Pair {
+            key,
+            pieces: (a, b),
+            bodies: (piece.body, pieces.body_of(b)),
+            wall,
+            kind,
+            surface,
+            rolling_arm: if rolling.is_finite() { surface.rolling_friction * rolling } else { 0.0 },
+            near: 0.01 * piece.size.min(size),
+            slack: 0.5 * least(piece.radius, round(a)).min(rounding),
+        }
+    }
+}
+
+/// Fills `reach` with each body's own, or that of a faster one it is paired with.
+fn spread_reach(own: &[f64], pairs: impl Iterator<Item = (u32, u32)>, reach: &mut Vec<f64>) {
+    reach.clear();
+    reach.extend_from_slice(own);
+    for (a, b) in pairs.filter(|&(a, b)| a != NONE && b != NONE) {
+        let (of_a, of_b) = (own[a as usize], own[b as usize]);
+        reach[a as usize] = reach[a as usize].max(of_b);
+        reach[b as usize] = reach[b as usize].max(of_a);
+    }
+}
+
+/// Whether two pieces (or a piece and a half-plane) can ever act on each other.
+fn may_touch(pieces: &Pieces, excluded: &[(u32, u32)], bodies: &Bodies, a: u32, b: u32) -> bool {
+    let piece = &pieces.all[a as usize];
+    let dynamic = |body: u32| body != NONE && bodies.is_dynamic(body as usize);
+    let Some(other) = pieces.all.get(b as usize) else { return dynamic(piece.body) };
+    let matched = |body: u32| body != NONE && bodies.elasticity(body as usize).is_some();
+    piece.body != other.body
+        && !matched(piece.body)
+        && !matched(other.body)
+        && (dynamic(piece.body) || dynamic(other.body))
+        && piece.filter.allows(&other.filter)
+        && excluded.binary_search(&(piece.body.min(other.body), piece.body.max(other.body))).is_err()
+}
