@@ -120,10 +120,14 @@ fn bodies_tables() {
     let count: usize = option("--bodies", "5000").parse().expect("--bodies takes a number");
     let rows: usize = option("--rows", "100").parse().expect("--rows takes a number");
     let seconds: f64 = option("--settle", "5").parse().expect("--settle takes a number");
-    let substeps = option("--substeps", "1,2,4");
-    let substeps: Vec<u32> = substeps.split(',').map(|n| n.parse().expect("--substeps takes numbers")).collect();
+    let substeps = option("--substeps", "2x1,3x1,4x1,3x2,4x2");
+    let number = |text: &str| text.parse::<u32>().expect("--substeps takes substeps x iterations, such as 4x1,3x2");
+    let setting = |text: &str| text.split_once('x').map_or_else(|| (number(text), 1), |(n, k)| (number(n), number(k)));
+    let substeps: Vec<(u32, u32)> = substeps.split(',').map(setting).collect();
     println!("## {count} bodies of 0.5 m settle, {seconds} s\n");
-    println!("| bodies | solver | substeps | processor time per frame [ms] | penetration [m] |\n|---|---|---|---|---|");
+    println!(
+        "| bodies | solver | substeps x iterations | processor time per frame [ms] | penetration [m] |\n|---|---|---|---|---|"
+    );
     for (name, kind) in [("discs", Kind::Discs), ("boxes", Kind::Boxes)] {
         for (substeps, of) in rigid::settle(kind, count, seconds, &substeps) {
             let Settled { solver, milliseconds, penetration, .. } = of;

@@ -4,7 +4,7 @@ use cpu_time::ProcessTime;
 
 use rapier2d::prelude::*;
 use unipbd_core::BuildOptions;
-use unipbd_core::scene::{BodyDescription, HalfPlane, Scene, SolverSettings, Substeps, Tank};
+use unipbd_core::scene::{BodyDescription, ContactDescription, HalfPlane, Scene, SolverSettings, Substeps, Tank};
 
 /// Side of a box and diameter of a disc [m].
 const SIZE: f64 = 0.5;
@@ -63,13 +63,19 @@ fn floor() -> HalfPlane {
     HalfPlane { friction: 0.5, ..HalfPlane::new([0.0, 0.0], [0.0, 1.0]) }
 }
 
-fn ours(kind: Kind, places: &[[f64; 2]], width: Option<f64>, substeps: u32) -> unipbd_core::Solver {
+fn ours(
+    kind: Kind,
+    places: &[[f64; 2]],
+    width: Option<f64>,
+    (substeps, iterations): (u32, u32),
+) -> unipbd_core::Solver {
     let scene = Scene {
         spacing: SIZE / 10.0,
         body: places.iter().map(|&place| body(kind, place)).collect(),
         tank: width.map(|width| Tank::new([0.0, 0.0], [width, 1000.0])).into_iter().collect(),
         half_plane: if width.is_none() { vec![floor()] } else { Vec::new() },
         solver: SolverSettings { substeps: Substeps::Fixed(substeps), ..SolverSettings::default() },
+        contacts: ContactDescription { iterations: Some(iterations), ..ContactDescription::default() },
         ..Scene::default()
     };
     let options = BuildOptions { threads: Some(1), ..BuildOptions::default() };
@@ -117,8 +123,8 @@ fn overlap(world: &PhysicsWorld) -> f64 {
 const THEIR_SUBSTEPS: u32 = 4;
 
 /// A heap that settles for some seconds, frame by frame in turn: unipbd by each of these numbers of
-/// substeps, then rapier2d.
-pub fn settle(kind: Kind, count: usize, seconds: f64, substeps: &[u32]) -> Vec<(u32, Settled)> {
+/// substeps and iterations, then rapier2d.
+pub fn settle(kind: Kind, count: usize, seconds: f64, substeps: &[(u32, u32)]) -> Vec<(String, Settled)> {
     let (width, places) = heap(count);
     let mut mine: Vec<_> = substeps.iter().map(|&n| ours(kind, &places, Some(width), n)).collect();
     let (mut theirs, _) = theirs(kind, &places, Some(width), THEIR_SUBSTEPS as usize);
@@ -137,8 +143,8 @@ pub fn settle(kind: Kind, count: usize, seconds: f64, substeps: &[u32]) -> Vec<(
     let depths = mine.iter().map(|solver| solver.diagnostics().contact_penetration).chain([overlap(&theirs)]);
     let settled = |(k, penetration): (usize, f64)| {
         let (solver, substeps) = match substeps.get(k) {
-            Some(&substeps) => ("unipbd", substeps),
-            None => ("rapier2d", THEIR_SUBSTEPS),
+            Some((substeps, iterations)) => ("unipbd", format!("{substeps} x {iterations}")),
+            None => ("rapier2d", THEIR_SUBSTEPS.to_string()),
         };
         (substeps, Settled { solver, milliseconds: 1e3 * spent[k] / f64::from(frames), penetration, stands: true })
     };
@@ -161,7 +167,7 @@ fn watch(top: [f64; 2], seconds: f64, mut step: impl FnMut() -> [f64; 2]) -> (bo
 /// A pyramid for some seconds at this many substeps in unipbd.
 pub fn stand(rows: usize, seconds: f64, substeps: u32) -> Settled {
     let places = pyramid(rows);
-    let mut solver = ours(Kind::Boxes, &places, None, substeps);
+    let mut solver = ours(Kind::Boxes, &places, None, (substeps, 1));
     let (stands, milliseconds) = watch(places[places.len() - 1], seconds, || {
         solver.step_frame().expect("the pyramid does not diverge");
         solver.bodies()[places.len() - 1].position.into()

@@ -205,6 +205,7 @@ impl Bodies {
     }
 
     /// Whether it may be somewhere else after the next substep.
+    #[inline]
     pub(crate) fn is_active(&self, id: usize) -> bool {
         match self.views[id].kind {
             BodyKind::Dynamic => !self.asleep[id] && self.matched[id].is_none(),

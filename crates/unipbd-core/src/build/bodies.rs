@@ -27,6 +27,7 @@ pub(super) fn build(scene: &Scene) -> (Bodies, Contacts) {
         method: scene.contacts.method,
         relaxation: scene.contacts.relaxation(),
         mass_scaling: scene.contacts.mass_scaling,
+        iterations: scene.contacts.iterations(),
         ..ContactSettings::default()
     };
     let mut contacts = Contacts::new(&walls(scene), settings);

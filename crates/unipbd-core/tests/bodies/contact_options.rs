@@ -93,6 +93,14 @@ fn mass_scaling_lets_a_stack_stand_with_fewer_substeps() {
 }
 
 #[test]
+fn more_iterations_let_a_stack_stand_with_fewer_substeps() {
+    let with = |iterations| lean(20, 4, ContactSettings { iterations, ..never_asleep() });
+    let (one, four) = (with(1), with(4));
+    println!("20 boxes, 4 substeps: {one:.2e} m with one iteration, {four:.2e} m with four");
+    assert!(one > 0.5 && four < 0.1);
+}
+
+#[test]
 fn mass_scaling_holds_averaged_stacks_up() {
     let with = |mass_scaling| lean(5, 8, ContactSettings { mass_scaling, ..averaged(1.0) });
     let (plain, scaled) = (with(0.0), with(3.0));

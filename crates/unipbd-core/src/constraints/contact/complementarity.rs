@@ -11,6 +11,7 @@ pub(super) struct Coupling {
 /// Finds impulses at or above `lower` after which no point moves slower than 0, and those above their
 /// bound not faster: a linear complementarity problem, by trying which points act.
 /// `motion` is the motion with the impulses `old`; with one point give the second no response.
+#[inline]
 pub(super) fn solve(coupling: &Coupling, motion: [f64; 2], old: [f64; 2], lower: [f64; 2]) -> [f64; 2] {
     let Coupling { first, second, off } = *coupling;
     let raise = |gain: f64, motion: f64, old: f64, lower: f64| {

@@ -217,11 +217,11 @@ impl Contact {
         let old = self.points.map(|point| point.normal_impulse);
         let Some(pressed) = self.press(displacements, old) else { return Push::default() };
         let mut push = Push::default();
-        for k in 0..self.count as usize {
+        for (k, old) in old.into_iter().enumerate().take(self.count as usize) {
             let (point, normal) = (self.points[k], pressed.normal[k]);
             let limit = self.gains.friction * normal;
             let tangent = (point.tangent_impulse - self.stop(k, &pressed)).clamp(-limit, limit);
-            self.add_push(&mut push, &point, normal - old[k], tangent - point.tangent_impulse);
+            self.add_push(&mut push, &point, normal - old, tangent - point.tangent_impulse);
             (self.points[k].normal_impulse, self.points[k].tangent_impulse) = (normal, tangent);
         }
         if self.rolling_arm > 0.0 {

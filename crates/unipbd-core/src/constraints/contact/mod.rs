@@ -53,6 +53,8 @@ pub struct ContactSettings {
     /// Contacts that share a body count this much less: over-relaxation of the split Jacobi sweep, below 2.
     /// With an odd number of iterations in a substep warm starting is stable only up to 4/3 (one) or 1.69 (three).
     pub relaxation: f64,
+    /// Iterations in a call of [`Contacts::iterate`], two of which make a substep.
+    pub iterations: u32,
     /// How overlap is taken out.
     pub depenetration: Depenetration,
     /// Velocity iterations of the restitution pass.
@@ -67,6 +69,7 @@ impl Default for ContactSettings {
             method: ContactMethod::Split,
             mass_scaling: 0.0,
             relaxation: 1.8,
+            iterations: 1,
             depenetration: Depenetration::default(),
             restitution_iterations: 6,
             sleep: Some(SleepSettings::default()),
@@ -241,8 +244,14 @@ impl Contacts {
         }));
     }
 
-    /// One Jacobi iteration of all contacts and joints on the displacements.
+    /// Jacobi iterations of all contacts and joints on the displacements, one unless the settings say more.
     pub fn iterate(&mut self, bodies: &mut Bodies) {
+        for _ in 0..self.settings.iterations {
+            self.sweep(bodies);
+        }
+    }
+
+    fn sweep(&mut self, bodies: &mut Bodies) {
         let displacements = &bodies.displacements;
         let rows = self.finder.rows();
         match self.settings.method {

@@ -108,7 +108,7 @@ impl Pairs {
     /// Makes the list hold all pairs that can touch in a substep of length `dt`.
     pub fn update(&mut self, pieces: &Pieces, bodies: &Bodies, dt: f64, gravity: f64) {
         self.follow(bodies);
-        self.estimate_reach(pieces, bodies, dt, gravity);
+        self.estimate_reach(bodies, dt, gravity);
         if !self.hold(pieces, bodies) {
             self.pair_up(pieces, bodies);
         } else if (0..bodies.len()).any(|id| self.was_active[id] != bodies.is_active(id)) {
@@ -128,7 +128,7 @@ impl Pairs {
     }
 
     /// A body near a faster one may be hit by it, and must see what is behind it as early.
-    fn estimate_reach(&mut self, pieces: &Pieces, bodies: &Bodies, dt: f64, gravity: f64) {
+    fn estimate_reach(&mut self, bodies: &Bodies, dt: f64, gravity: f64) {
         self.own_reach.clear();
         self.own_reach.extend((0..bodies.len()).map(|id| {
             let velocity = &bodies.velocities[id];
@@ -137,7 +137,6 @@ impl Pairs {
         }));
         let pairs = self.active.iter().map(|&index| self.all[index as usize].bodies);
         spread_reach(&self.own_reach, pairs, &mut self.reach);
-        debug_assert!(pieces.all.len() >= self.fat.len());
     }
 
     /// Whether no piece can leave the box that pairs were sought with.
