@@ -30,8 +30,8 @@ pub struct Diagnostics {
     pub density_error_max: f64,
     /// Smallest C over fluid particles (dilation), as a fraction.
     pub density_error_min: f64,
-    /// Largest pressure over density of single multipliers [m^2/s^2]: cheap, and up to a third high beside walls;
-    /// [`Solver::pressures`](crate::Solver::pressures) are read with more care.
+    /// Largest pressure over density [m^2/s^2], read as [`Solver::pressures`](crate::Solver::pressures) are, at the
+    /// 256 particles with the largest multipliers.
     pub pressure_max: f64,
     /// Kinetic energy [J].
     pub kinetic_energy: f64,

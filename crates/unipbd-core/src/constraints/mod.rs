@@ -138,6 +138,13 @@ pub trait ConstraintGroup: Send + Sync {
         None
     }
 
+    /// The largest of these pressures, from the rows that may have it, where this is a group that can tell
+    /// [m^2/s^2].
+    fn measure_pressure_max(&self, now: Substep<'_>) -> Option<Real> {
+        let _ = now;
+        None
+    }
+
     /// What a saved state must hold beside the particles: words that [`restore`](Self::restore) takes.
     fn save(&self) -> Vec<u64> {
         Vec::new()

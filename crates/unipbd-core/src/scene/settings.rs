@@ -40,7 +40,8 @@ pub struct SolverSettings {
     /// density: for comparison.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mass_density: Option<MassDensityDescription>,
-    /// Substeps without gravity before time 0 that bring the start to its rest density.
+    /// Substeps without gravity before time 0 that bring the start to its rest density: at most this many, fewer
+    /// where nothing moves any more. About three times the layers of the deepest liquid bring all of it there.
     pub settle_substeps: u32,
     /// Whether liquid at rest falls asleep: it is held where it is, at no cost, until something near it moves.
     pub sleep: bool,
@@ -62,7 +63,7 @@ impl Default for SolverSettings {
             constraint_mixing: 0.0,
             artificial_pressure: 0.0,
             mass_density: None,
-            settle_substeps: 40,
+            settle_substeps: 100,
             sleep: false,
         }
     }

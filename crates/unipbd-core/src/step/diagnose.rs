@@ -191,10 +191,17 @@ impl World {
         (0..particles.len()).map(|row| particles.multiplier[row] * particles.inverse_mass[row] * scale).collect()
     }
 
-    /// The largest lambda/(m dt^2): cheap enough for every frame.
+    /// The largest pressure over density: cheap enough for every frame.
     fn pressure_max(&self) -> f64 {
         if self.clock.dt == 0.0 {
             return 0.0;
+        }
+        if self.stages.contains(&Stage::FindNeighbors) && self.parts.neighbors.is_current() {
+            let now = World::now(&self.parts, &self.rows, &self.clock);
+            let measured = self.parts.groups.iter().find_map(|group| group.measure_pressure_max(now));
+            if let Some(largest) = measured {
+                return f64::from(largest);
+            }
         }
         let particles = &self.parts.particles;
         let pressure = |row: usize| particles.multiplier[row] * particles.inverse_mass[row];

@@ -276,16 +276,19 @@ impl World {
         self.parts.smoke = Some(smoke);
     }
 
-    /// One projection without forces and motion.
-    pub(super) fn hold_still(&mut self) {
-        integrate::hold(&mut self.parts.particles);
+    /// One projection without forces, and how far it moved any particle [m]. A part of it goes on in the next one.
+    pub(super) fn hold_still(&mut self) -> f64 {
+        integrate::hold(&mut self.parts.particles, self.parts.parallelism);
         if self.stages.contains(&Stage::FindNeighbors) {
             self.find_neighbors();
         }
+        let carried = integrate::take_carried(&mut self.parts.particles);
         self.begin_groups();
         self.project();
         integrate::carry_remainders(&mut self.parts.particles, self.parts.parallelism);
+        let farthest = integrate::go_on(&mut self.parts.particles, &carried);
         integrate::wrap(&mut self.parts.particles, self.parts.neighbors.periodic(), self.parts.parallelism);
+        farthest
     }
 }
 

@@ -3,7 +3,7 @@
 use crate::bytes::held;
 use std::sync::OnceLock;
 
-use super::integrate::BodyForce;
+use super::integrate::{self, BodyForce};
 use super::pipeline::{Features, pipeline};
 use super::substeps::{Choice, SubstepRule};
 use super::timings::Timings;
@@ -20,6 +20,9 @@ use crate::rows::RowIndex;
 use crate::sleep::LiquidSleep;
 use crate::sources::{EmitterSystem, RemovalRules};
 use crate::walls::Walls;
+
+/// Settling ends where no particle moves farther than this many spacings in a substep.
+const SETTLED: f64 = 1e-5;
 
 /// What a scene is made of, before the loop sees it.
 pub(crate) struct Parts {
@@ -290,7 +293,10 @@ impl World {
         self.clock.dt = self.parts.frame_time;
         self.clock.pressure_limit = self.pressure_limit();
         if self.parts.particles.dense() > 0 {
-            (0..substeps).for_each(|_| self.hold_still());
+            // Once nothing moves any more, nothing will.
+            let still = SETTLED * self.parts.spacing;
+            (0..substeps).find(|_| self.hold_still() <= still);
+            integrate::stand(&mut self.parts.particles);
         }
         // The start can be observed like any other moment.
         if self.stages.contains(&Stage::FindNeighbors) {

@@ -63,7 +63,7 @@ impl Density {
         let kernel = Kernel::of(settings.kernel, settings.kernel_radius);
         Density {
             kernel,
-            coverage: Coverage::new(&kernel),
+            coverage: Coverage::upholding(&kernel, settings.spacing),
             places: Places::new(settings.gradients, settings.spacing),
             settings,
             sums: Sums::default(),
@@ -134,6 +134,10 @@ impl ConstraintGroup for Density {
 
     fn measure_pressure(&self, now: Substep<'_>) -> Option<Vec<Real>> {
         Some(self.read_pressures(now))
+    }
+
+    fn measure_pressure_max(&self, now: Substep<'_>) -> Option<Real> {
+        Some(self.read_largest_pressure(now))
     }
 
     fn density(&self) -> Option<DensityColumns<'_>> {

@@ -13,8 +13,14 @@
 
 use super::Density;
 use crate::constraints::Substep;
-use crate::math::{Real, Vector};
+use crate::math::{Real, Vector, larger};
 use crate::phase::Phase;
+
+/// The largest pressure is looked for where a multiplier over its mass is at least this part of the largest one:
+/// beside walls they read up to a third high, and where they are much smaller no pressure is large.
+const CANDIDATE_PART: Real = 0.6;
+/// Among at most this many.
+const CANDIDATES: usize = 256;
 
 /// Stress of a particle times volume, substep squared and so on, and the directions in which it counts.
 #[derive(Clone, Copy, Default)]
@@ -61,19 +67,46 @@ impl Stress {
     }
 }
 
+/// Whether a row is of a fluid that moves.
+fn is_pressed(now: Substep<'_>, row: usize) -> bool {
+    now.particles.phases()[row].is_fluid() && now.particles.inverse_masses()[row] > 0.0
+}
+
 impl Density {
     /// Pressure over density by row [m^2/s^2]; 0 for what is no fluid.
     pub(super) fn read_pressures(&self, now: Substep<'_>) -> Vec<Real> {
         let particles = now.particles;
         let mut pressures = vec![0.0; particles.len()];
-        let (phases, inverse_masses) = (particles.phases(), particles.inverse_masses());
-        let scale = 1.0 / (now.dt * now.dt);
         now.parallelism.update(&mut pressures[..particles.dense()], |row, pressure| {
-            if phases[row].is_fluid() && inverse_masses[row] > 0.0 {
-                *pressure = self.stress(now, row).pressure() * inverse_masses[row] * scale;
+            if is_pressed(now, row) {
+                *pressure = self.pressure(now, row);
             }
         });
         pressures
+    }
+
+    /// The largest pressure over density [m^2/s^2]: read where multipliers are large, at a cost that does not grow
+    /// with the number of particles.
+    pub(super) fn read_largest_pressure(&self, now: Substep<'_>) -> Real {
+        let particles = now.particles;
+        let (multipliers, inverse_masses) = (&particles.multiplier, particles.inverse_masses());
+        let single = |row: usize| if is_pressed(now, row) { multipliers[row] * inverse_masses[row] } else { 0.0 };
+        let least = CANDIDATE_PART * now.parallelism.max(particles.dense(), single);
+        if least <= 0.0 {
+            return 0.0;
+        }
+        let mut rows: Vec<usize> = (0..particles.dense()).filter(|&row| single(row) >= least).collect();
+        if rows.len() > CANDIDATES {
+            let larger_first = |a: &usize, b: &usize| single(*b).total_cmp(&single(*a)).then(a.cmp(b));
+            rows.select_nth_unstable_by(CANDIDATES, larger_first);
+            rows.truncate(CANDIDATES);
+        }
+        rows.into_iter().map(|row| self.pressure(now, row)).fold(0.0, larger)
+    }
+
+    /// Pressure over density of a fluid particle [m^2/s^2].
+    fn pressure(&self, now: Substep<'_>, row: usize) -> Real {
+        self.stress(now, row).pressure() * now.particles.inverse_masses()[row] / (now.dt * now.dt)
     }
 
     fn stress(&self, now: Substep<'_>, row: usize) -> Stress {

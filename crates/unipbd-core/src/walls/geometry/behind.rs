@@ -108,16 +108,23 @@ impl Walls {
 impl Rectangle {
     pub(super) fn coverage(&self, x: Vector, coverage: &Coverage) -> (Real, Vector) {
         let reach = Vector::splat(coverage.radius());
-        let (low, high) = (self.min - x, self.max - x);
-        if low.cmpge(reach).any() || high.cmple(-reach).any() {
+        let (low, high) = (x - self.min, self.max - x);
+        if low.cmple(-reach).any() || high.cmple(-reach).any() {
             return (0.0, Vector::ZERO);
         }
-        let corners = [(high.x, high.y, 1.0), (low.x, high.y, -1.0), (high.x, low.y, -1.0), (low.x, low.y, 1.0)];
-        let (mut inside, mut gradient) = (0.0, Vector::ZERO);
-        for (a, b, sign) in corners {
-            let (part, slope) = coverage.quadrant(a, b);
-            inside += sign * part;
-            gradient -= slope * sign;
+        // Between two sides lies what is behind each, less all; so along both axes at once.
+        let (mut inside, mut gradient) = (1.0, Vector::ZERO);
+        for (a, to_x) in [(low.x, 1.0), (high.x, -1.0)] {
+            for (b, to_y) in [(low.y, 1.0), (high.y, -1.0)] {
+                let (part, slope) = coverage.quadrant(a, b);
+                inside += part;
+                gradient += slope * Vector::new(to_x, to_y);
+            }
+        }
+        for (a, axis) in [(low.x, Vector::X), (high.x, -Vector::X), (low.y, Vector::Y), (high.y, -Vector::Y)] {
+            let (part, slope) = coverage.behind(-a);
+            inside -= part;
+            gradient += axis * slope;
         }
         (inside, gradient)
     }
@@ -175,6 +182,22 @@ mod tests {
         for x in [Vector::new(0.5, 0.5), Vector::new(2.4, 2.0), Vector::new(1.5, 4.2)] {
             let expected = brute_force(&kernel, x, |p| p.x > 1.0 && p.x < 2.0 && p.y > 1.0 && p.y < 4.0);
             assert!((walls.coverage(x, &coverage).0 - expected).abs() < 2e-3);
+        }
+    }
+
+    #[test]
+    fn an_obstacle_that_upholds_a_liquid_does_so_on_all_sides() {
+        let obstacle = Obstacle::new([-20.0, -15.0], [20.0, 15.0]);
+        let walls = Walls::new(&Scene { obstacle: vec![obstacle], ..Scene::default() });
+        let coverage = Coverage::upholding(&Kernel::new(2.5), 1.0);
+        for distance in [0.1, 0.5, 1.3, 2.4] {
+            let (part, slope) = coverage.behind(distance);
+            for side in [Vector::X, -Vector::X, Vector::Y, -Vector::Y] {
+                let x = side * (side.abs().dot(Vector::new(20.0, 15.0)) + distance);
+                let (inside, gradient) = walls.coverage(x, &coverage);
+                assert!((inside - part).abs() < 3e-4, "{x}: {inside} {part}");
+                assert!((gradient - side * slope).length() < 1e-3, "{x}: {gradient} {slope}");
+            }
         }
     }
 
