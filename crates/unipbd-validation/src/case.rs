@@ -75,6 +75,9 @@ impl Figure {
     }
 }
 
+/// The step settings of most full runs: how much compression `auto` may allow.
+pub const TARGETS: &[f64] = &[0.04, 0.01, 0.0025];
+
 /// How a case is to be run.
 #[derive(Clone, Debug)]
 pub struct Trial {
@@ -82,6 +85,13 @@ pub struct Trial {
     pub resolution: u32,
     /// How the constraints are solved.
     pub solver: SolverSettings,
+}
+
+impl Trial {
+    /// A band that is meant for this target compression, or a lower one; above it the figure is reported only.
+    pub fn from_target(&self, target: f64, band: Band) -> Band {
+        if self.solver.target_compression <= target { band } else { Band::OPEN }
+    }
 }
 
 /// What a case gave.
@@ -119,7 +129,9 @@ pub struct Case {
     /// Resolution of the quick run.
     pub quick: u32,
     /// Resolutions of the full run.
-    pub full: [u32; 3],
+    pub full: &'static [u32],
+    /// Target compressions of the full run.
+    pub targets: &'static [f64],
     /// Runs it.
     pub run: fn(&Trial) -> Result<Measured, Failure>,
 }

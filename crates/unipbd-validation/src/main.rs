@@ -4,12 +4,12 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use unipbd_core::scene::{GradientPoint, KernelKind, SolverSettings, Substeps};
-use unipbd_validation::report::{Entry, TARGETS, sheet, with_notes, with_section};
+use unipbd_validation::report::{Entry, sheet, with_notes, with_section};
 use unipbd_validation::stress::map::MAPS;
 use unipbd_validation::stress::{
     Ending, NAMED, Quiet, chart, endure_random, fuzz, quiet, random_scene, shrink, summary,
 };
-use unipbd_validation::{cases, precision, sweep};
+use unipbd_validation::{cases, precision, report, sweep};
 
 const HELP: &str =
     "usage: unipbd-validation [--quick | --full | --sweep [--full] | --stress [--full] | --map | --precision | CASE [RESOLUTION] [SETTING=VALUE...]]
@@ -144,12 +144,14 @@ fn run_full() -> Result<bool, Box<dyn std::error::Error>> {
         let mut resolutions = case.full.to_vec();
         resolutions.dedup();
         for resolution in resolutions {
-            for target in TARGETS {
+            for &target in case.targets {
                 let entry = Entry::run(case, resolution, target);
                 show(&entry);
                 entries.push(entry);
             }
         }
+        let own: Vec<&Entry> = entries.iter().filter(|entry| entry.case.name == case.name).collect();
+        print!("{}", report::work(&own));
         std::fs::write(SHEET, sheet(&entries, &charts))?;
     }
     run_precision()?;

@@ -5,11 +5,9 @@ use std::fmt::Write;
 use unipbd_core::scene::SolverSettings;
 
 use crate::case::{Case, Outcome};
+use crate::cases::SUBSTEPS_PER_FRAME;
 use crate::notes::NOTES;
 use crate::runner::Failure;
-
-/// A step setting of the full run: how much compression `auto` may allow.
-pub const TARGETS: [f64; 3] = [0.04, 0.01, 0.0025];
 
 /// The solver with this target.
 pub fn settings(target: f64) -> SolverSettings {
@@ -62,6 +60,7 @@ pub fn sheet(entries: &[Entry], charts: &[String]) -> String {
         text.push_str("| resolution | target | figure | value | band | verdict | wall [s] | pair visits |\n");
         text.push_str("|---|---|---|---|---|---|---|---|\n");
         own.iter().for_each(|entry| rows(&mut text, entry));
+        text.push_str(&work(&own));
         if let Some(order) = order(&own) {
             let _ = writeln!(text, "\nOrder of convergence of the first figure with the spacing: {order:.2}.");
         }
@@ -114,6 +113,34 @@ fn order(entries: &[&Entry]) -> Option<f64> {
         .filter_map(|entry| Some((-f64::from(entry.resolution).ln(), entry.result.as_ref().ok()?.error().ln())))
         .filter(|(_, error)| error.is_finite())
         .collect();
+    slope(&points)
+}
+
+/// How the work grows with the depth, at each target, where a case tells its substeps per frame.
+pub fn work(entries: &[&Entry]) -> String {
+    let mut text = String::new();
+    let targets = entries.first().map_or(&[][..], |entry| entry.case.targets);
+    for &target in targets {
+        let of = |entry: &&Entry| {
+            let figures = &entry.result.as_ref().ok()?.figures;
+            let substeps = figures.iter().find(|figure| figure.what == SUBSTEPS_PER_FRAME)?.value;
+            (entry.target == target).then(|| (f64::from(entry.resolution).ln(), substeps.ln()))
+        };
+        let points: Vec<(f64, f64)> = entries.iter().filter_map(of).collect();
+        if let Some(power) = slope(&points) {
+            let _ = writeln!(
+                text,
+                "\nAt target {target} the substeps per frame grow with the depth to the power {power:.2}: the work of a \
+                 square of N particles with N^{:.2}.",
+                1.0 + 0.5 * power
+            );
+        }
+    }
+    text
+}
+
+/// Slope of the line through points, by least squares.
+fn slope(points: &[(f64, f64)]) -> Option<f64> {
     let count = points.len() as f64;
     let (mx, my) = (points.iter().map(|p| p.0).sum::<f64>() / count, points.iter().map(|p| p.1).sum::<f64>() / count);
     let (top, bottom) =

@@ -3,7 +3,7 @@
 use unipbd_core::Solver;
 use unipbd_core::scene::{Copies, Heap, JointDescription, JointRule, RotationRule, Scene, SolverSettings, Substeps};
 
-use crate::case::{Band, Case, Figure, Measured, Trial};
+use crate::case::{Band, Case, Figure, Measured, TARGETS, Trial};
 use crate::exact::pendulum;
 use crate::runner::{Cost, Failure, Runner};
 use crate::scenes::{GRAVITY, body, floor};
@@ -18,7 +18,8 @@ pub const BLOCK_ON_INCLINE: Case = Case {
     name: "block_on_incline",
     truth: "Coulomb: sticks iff tan(theta) <= mu, else a = g (sin - mu cos)",
     quick: 8,
-    full: [4, 8, 16],
+    full: &[4, 8, 16],
+    targets: TARGETS,
     run: block_on_incline,
 };
 
@@ -71,7 +72,8 @@ pub const DISC_ON_INCLINE: Case = Case {
     name: "disc_on_incline",
     truth: "Coulomb: rolls at 2/3 g sin(theta) iff mu >= tan(theta)/3, else a = g (sin - mu cos)",
     quick: 8,
-    full: [4, 8, 16],
+    full: &[4, 8, 16],
+    targets: TARGETS,
     run: disc_on_incline,
 };
 
@@ -122,7 +124,8 @@ pub const PENDULUM: Case = Case {
     name: "pendulum",
     truth: "T/T0 = 1/AGM(1, cos(theta0/2)): 1.03997 at 45 degrees, 1.18034 at 90 degrees",
     quick: 16,
-    full: [8, 16, 32],
+    full: &[8, 16, 32],
+    targets: TARGETS,
     run: |trial| {
         let ((first, one), (second, two)) = (swing(trial, 45.0)?, swing(trial, 90.0)?);
         let figures = vec![
@@ -165,7 +168,8 @@ pub const ROPE: Case = Case {
     name: "rope",
     truth: "discrete catenary: link slopes tan(phi_j) = w (j - (N+1)/2)/H, span 1 m, length 1.2 m",
     quick: 16,
-    full: [8, 16, 32],
+    full: &[8, 16, 32],
+    targets: TARGETS,
     run: rope,
 };
 
@@ -233,7 +237,8 @@ pub const GRANULAR_COLUMN: Case = Case {
     name: "granular_column",
     truth: "experiments at aspect ratio 2: run-out 2.4 to 3.6 widths (Lube 2005, Lajeunesse 2005), slope below atan(mu)",
     quick: 8,
-    full: [8, 12, 16],
+    full: &[8, 12, 16],
+    targets: TARGETS,
     run: granular,
 };
 

@@ -3,7 +3,7 @@
 use unipbd_core::kernel::Kernel;
 use unipbd_core::scene::{Block, Gas, Scene};
 
-use crate::case::{Band, Case, Figure, Measured, Trial};
+use crate::case::{Band, Case, Figure, Measured, TARGETS, Trial};
 use crate::runner::{Failure, Runner, velocities};
 
 /// The drag of thin gas is linear in its velocity.
@@ -11,7 +11,8 @@ pub const DRAG: Case = Case {
     name: "drag",
     truth: "linear drag: v = v_t (1 - exp(-t/tau)), 1/tau = k (1 - rho/rho0) of a lone particle",
     quick: 1,
-    full: [1, 1, 1],
+    full: &[1, 1, 1],
+    targets: TARGETS,
     run: drag,
 };
 

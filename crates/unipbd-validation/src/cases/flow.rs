@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use unipbd_core::math::Vector64;
 use unipbd_core::scene::{Block, Domain, HalfPlane, Liquid, LiquidSurface, Scene, Slip, SolverSettings};
 
-use crate::case::{Band, Case, Figure, Measured, Trial};
+use crate::case::{Band, Case, Figure, Measured, TARGETS, Trial};
 use crate::exact::{couette, poiseuille};
 use crate::runner::{Failure, Runner, points, velocities};
 
@@ -14,7 +14,8 @@ pub const TAYLOR_GREEN: Case = Case {
     name: "taylor_green",
     truth: "kinetic energy exp(-16 pi^2 t/Re), Re = 100, to t = 1",
     quick: 32,
-    full: [50, 100, 200],
+    full: &[50, 100, 200],
+    targets: TARGETS,
     run: |trial| taylor_green(trial, 100.0, Band::between(0.0, 0.06)),
 };
 
@@ -23,7 +24,8 @@ pub const TAYLOR_GREEN_WIDE: Case = Case {
     name: "taylor_green_wide",
     truth: "kinetic energy exp(-16 pi^2 t/Re), Re = 100, to t = 1, at h = 4 dx",
     quick: 32,
-    full: [50, 100, 200],
+    full: &[50, 100, 200],
+    targets: TARGETS,
     run: |trial| {
         let wide = SolverSettings { kernel_radius: 4.0, ..trial.solver.clone() };
         taylor_green(&Trial { solver: wide, ..trial.clone() }, 100.0, Band::between(0.0, 0.06))
@@ -35,7 +37,8 @@ pub const TAYLOR_GREEN_1000: Case = Case {
     name: "taylor_green_1000",
     truth: "kinetic energy exp(-16 pi^2 t/Re), Re = 1000, to t = 1",
     quick: 32,
-    full: [50, 100, 200],
+    full: &[50, 100, 200],
+    targets: TARGETS,
     run: |trial| taylor_green(trial, 1000.0, Band::OPEN),
 };
 
@@ -89,7 +92,8 @@ pub const COUETTE: Case = Case {
     name: "couette",
     truth: "start-up of plane Couette flow (series; Morris et al. 1997), tau = 0.05, 0.1, 0.2",
     quick: 16,
-    full: [16, 32, 64],
+    full: &[16, 32, 64],
+    targets: TARGETS,
     run: |trial| channel(trial, Drive::Lid),
 };
 
@@ -98,7 +102,8 @@ pub const POISEUILLE: Case = Case {
     name: "poiseuille",
     truth: "start-up of plane Poiseuille flow (series; Morris et al. 1997), tau = 0.05, 0.1, 0.2",
     quick: 16,
-    full: [16, 32, 64],
+    full: &[16, 32, 64],
+    targets: TARGETS,
     run: |trial| channel(trial, Drive::Force),
 };
 

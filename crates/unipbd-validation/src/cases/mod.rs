@@ -8,6 +8,8 @@ mod layers;
 mod pool;
 mod wave;
 
+pub use pool::SUBSTEPS_PER_FRAME;
+
 use crate::case::Case;
 
 /// All cases, in the order of the table.

@@ -4,7 +4,7 @@ use std::f64::consts::PI;
 
 use unipbd_core::math::Vector64;
 
-use crate::case::{Band, Case, Figure, Measured, Trial};
+use crate::case::{Band, Case, Figure, Measured, TARGETS, Trial};
 use crate::exact::wave_viscosity;
 use crate::runner::{Failure, Runner, points};
 use crate::scenes::{GRAVITY, SPACING, pool};
@@ -14,7 +14,8 @@ pub const STANDING_WAVE: Case = Case {
     name: "standing_wave",
     truth: "omega^2 = g k tanh(k d); no decay (what there is, is numerical viscosity: Prosperetti 1976)",
     quick: 24,
-    full: [32, 64, 128],
+    full: &[32, 64, 128],
+    targets: TARGETS,
     run: standing_wave,
 };
 
