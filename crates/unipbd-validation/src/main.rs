@@ -21,7 +21,7 @@ const HELP: &str =
   --map     what is stable: density ratio, depth and speed against substeps; its part of docs/accuracy.md and
             docs/images/stability.svg (--full does it too)
   --precision  f32 against f64 (built by cargo); its part of docs/accuracy.md (--full does it too)
-  CASE      one case; settings are target, substeps, iterations, tolerance, kernel, kernel_radius, relaxation,
+  CASE      one case; settings are target, substeps, iterations, tolerance, kernel, kernel_radius, relaxation, shifting,
             gradients, constraint_mixing, artificial_pressure";
 
 /// Scenes that once broke.
@@ -107,6 +107,7 @@ fn set(solver: &mut SolverSettings, key: &str, value: &str) -> Result<(), Box<dy
         "iterations" => solver.iterations = value.parse()?,
         "tolerance" => solver.tolerance = value.parse()?,
         "kernel_radius" => solver.kernel_radius = value.parse()?,
+        "shifting" => solver.shifting = Some(value.parse()?),
         "relaxation" => solver.relaxation = Some(value.parse()?),
         "constraint_mixing" => solver.constraint_mixing = value.parse()?,
         "artificial_pressure" => solver.artificial_pressure = value.parse()?,

@@ -6,6 +6,7 @@ use std::ops::Range;
 #[derive(Clone, Debug, Default)]
 pub struct Corrections {
     displacement: Vec<Vector>,
+    shift: Vec<Vector>,
     load: Vec<Vector>,
     wall_load: Vec<Vector64>,
 }
@@ -19,6 +20,17 @@ impl Corrections {
     /// Displacements by row, to be written [m].
     pub fn displacements_mut(&mut self) -> &mut [Vector] {
         &mut self.displacement
+    }
+
+    /// Moves by row that velocities do not follow [m]; empty where no group asks for them.
+    pub fn shifts(&self) -> &[Vector] {
+        &self.shift
+    }
+
+    /// Moves by row that velocities do not follow, to be written [m].
+    pub fn shifts_mut(&mut self) -> &mut [Vector] {
+        self.shift.resize(self.displacement.len(), Vector::ZERO);
+        &mut self.shift
     }
 
     /// Forces on samples of rigid bodies times dt^2, by dense row [kg m]; empty in a scene without bodies.
@@ -42,7 +54,7 @@ impl Corrections {
     }
 
     pub(crate) fn memory_bytes(&self) -> usize {
-        held(&self.displacement) + held(&self.load) + held(&self.wall_load)
+        held(&self.displacement) + held(&self.shift) + held(&self.load) + held(&self.wall_load)
     }
 
     /// Adds a displacement to one row.
@@ -55,6 +67,7 @@ impl Corrections {
     pub(crate) fn reset(&mut self, rows: usize, written: [Range<usize>; 2], samples: usize, walls: usize) {
         self.displacement.resize(rows, Vector::ZERO);
         written.into_iter().for_each(|band| self.displacement[band].fill(Vector::ZERO));
+        self.shift.clear();
         self.load.clear();
         self.load.resize(samples, Vector::ZERO);
         self.wall_load.clear();

@@ -122,6 +122,15 @@ impl Moving<'_> {
     }
 }
 
+/// Takes up the moves that velocities do not follow: as what is left over, they are no part of the displacements.
+pub(super) fn shift(particles: &mut Particles, corrections: &Corrections, parallelism: Parallelism) {
+    let shifts = corrections.shifts();
+    for rows in particles.bands() {
+        let shifts = shifts.get(rows.clone()).unwrap_or_default();
+        parallelism.update(&mut particles.remainder[rows][..shifts.len()], |row, remainder| *remainder += shifts[row]);
+    }
+}
+
 /// Adds corrections to the displacements, keeps particles out of walls, moves positions along.
 pub(super) fn apply(particles: &mut Particles, corrections: &Corrections, walls: &Walls, parallelism: Parallelism) {
     let (steps, bands) = (corrections.displacements(), particles.bands());

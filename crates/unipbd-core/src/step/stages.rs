@@ -140,6 +140,7 @@ impl World {
     }
 
     fn take_up_corrections(&mut self) {
+        integrate::shift(&mut self.parts.particles, &self.corrections, self.parts.parallelism);
         self.measure_walls();
         let parts = &mut self.parts;
         integrate::apply(&mut parts.particles, &self.corrections, &parts.walls, parts.parallelism);

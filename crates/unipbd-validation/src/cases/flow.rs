@@ -19,7 +19,7 @@ pub const TAYLOR_GREEN: Case = Case {
     run: |trial| taylor_green(trial, 100.0, Band::between(0.0, 0.06)),
 };
 
-/// The same with a wide kernel, the setting with the least numerical viscosity.
+/// The same with a wide kernel.
 pub const TAYLOR_GREEN_WIDE: Case = Case {
     name: "taylor_green_wide",
     truth: "kinetic energy exp(-16 pi^2 t/Re), Re = 100, to t = 1, at h = 4 dx",
@@ -55,7 +55,7 @@ fn taylor_green(trial: &Trial, reynolds: f64, band: Band) -> Result<Measured, Fa
         solver: trial.solver.clone(),
         domain: Domain { periodic_x: Some([0.0, 1.0]), periodic_y: Some([0.0, 1.0]), ..Domain::default() },
         liquid: vec![filling(1.0 / reynolds)],
-        // A lattice resists shear until it is broken up, and takes a tenth of the energy with it.
+        // A lattice resists shear until it is broken up.
         block: vec![Block { jitter: 0.5, ..Block::new("fluid", [0.0, 0.0], [1.0, 1.0]) }],
         ..Scene::default()
     };
@@ -64,7 +64,9 @@ fn taylor_green(trial: &Trial, reynolds: f64, band: Band) -> Result<Measured, Fa
         let (x, y) = (2.0 * PI * x.x, 2.0 * PI * x.y);
         Vector64::new(-x.cos() * y.sin(), x.sin() * y.cos())
     };
-    run.stir(field)?;
+    // At scattered points the field does not sum to zero: what is left would pass for a drift of momentum.
+    let mean = points(&run.solver).fold(Vector64::ZERO, |sum, x| sum + field(x)) / points(&run.solver).count() as f64;
+    run.stir(|x| field(x) - mean)?;
     let start = run.solver.diagnostics().kinetic_energy;
     let mut curve = Vec::new();
     let mut compression = 0.0;
@@ -78,10 +80,12 @@ fn taylor_green(trial: &Trial, reynolds: f64, band: Band) -> Result<Measured, Fa
     let (time, energy) = curve[curve.len() - 1];
     let fitted = -energy.ln() / (16.0 * PI * PI * time);
     let momentum = run.solver.diagnostics().momentum.length();
+    let highest = curve.iter().map(|(_, energy)| *energy).fold(0.0, f64::max);
     let figures = vec![
         Figure::new("kinetic energy error to t = 1", error, band),
         Figure::new("fitted viscosity over the true one", fitted * reynolds, Band::OPEN),
-        Figure::new("momentum over mass x U", momentum, Band::within(1e-4)),
+        Figure::new("momentum over mass x U", momentum, Band::within(1e-5)),
+        Figure::new("largest kinetic energy over that of the start", highest, Band::between(0.0, 1.005)),
         Figure::new("mean C", compression, Band::OPEN),
     ];
     Ok((figures, run.cost))

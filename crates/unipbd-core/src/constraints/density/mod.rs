@@ -105,6 +105,7 @@ impl ConstraintGroup for Density {
         self.places.find(now);
         self.sum_kernels(now);
         self.step_multipliers(now);
+        self.shift(now, out);
         self.correct(now, out);
         self.load_bodies(now, out);
         self.load_walls(now, out);

@@ -21,8 +21,10 @@ pub struct DensitySettings {
     pub gradients: GradientPoint,
     /// The inverse mass of all dense particles, where they have but one [1/kg].
     pub uniform_inverse_mass: Option<Real>,
-    /// Pair repulsion, where any material has it.
+    /// Pair repulsion, where there is gas.
     pub repulsion: Option<Reach>,
+    /// Farthest that a particle is shifted in one substep, where any material is [m].
+    pub farthest_shift: Option<Real>,
     /// Artificial pressure of Macklin & Müller 2013 [m^2]; 0 is none.
     pub artificial_pressure: Real,
     /// Per material.
@@ -47,6 +49,8 @@ pub struct DensityMaterial {
     pub mixing: Real,
     /// Mass of a particle [kg]: times the pressure limit it bounds the multiplier.
     pub mass: Real,
+    /// How far it is shifted down the gradient of the kernel sum, to even out the arrangement [m^2].
+    pub shifting: Real,
     /// Repulsion strength; the product of two, times an inverse mass, is the part of its overlap that
     /// a pair gives back per substep [kg^1/2].
     pub repulsion: Real,
@@ -54,8 +58,8 @@ pub struct DensityMaterial {
 
 /// The gas constraint is off below this density error: the edge of a plume.
 const GAS_GATE: f64 = -0.3;
-/// The denominator of a gas particle is at least this part of its value at rest.
-const GAS_RESPONSE_FLOOR: f64 = 0.5;
+/// The denominator of a particle that resists dilation too is at least this part of its value at rest.
+const FILLED_RESPONSE_FLOOR: f64 = 0.5;
 /// That of a particle moved by a script, of any fluid, is at least this part of its value at rest.
 const SCRIPTED_RESPONSE_FLOOR: f64 = 0.5;
 /// Gas particles nearer than this many spacings repel each other...
@@ -65,6 +69,10 @@ const REPULSION_REACH: f64 = 0.8;
 const REPULSION_FULL: f64 = 0.6;
 /// ...by this part of their overlap per substep.
 const GAS_REPULSION: f64 = 0.8;
+/// Nothing is shifted farther than this in one substep [spacings].
+const FARTHEST_SHIFT: f64 = 0.05;
+/// Density errors at which shifting ends and is whole: at an edge it would spread into the void.
+const SHIFT_GATE: [Real; 2] = [-0.15, -0.05];
 
 impl DensitySettings {
     /// The settings a scene asks for.
@@ -75,6 +83,9 @@ impl DensitySettings {
         let volume = 1.0 / (sums.value + f64::from(kernel.value(0.0)));
         let rest_response = volume * volume * sums.gradient_squared;
         let two_sided = scene.materials().any(|material| material.is_two_sided());
+        let materials = scene.materials().map(|material| DensityMaterial::new(material, scene, rest_response));
+        let materials: Vec<DensityMaterial> = materials.collect();
+        let shifts = materials.iter().any(|material| material.shifting > 0.0);
         let default_gradients = if two_sided { GradientPoint::Start } else { GradientPoint::Predicted };
         DensitySettings {
             kernel: scene.solver.kernel,
@@ -85,8 +96,12 @@ impl DensitySettings {
             gradients: scene.solver.gradients.unwrap_or(default_gradients),
             uniform_inverse_mass: uniform_mass(scene).map(|mass| real(1.0 / mass)),
             artificial_pressure: real(scene.solver.artificial_pressure * scene.spacing * scene.spacing),
-            repulsion: two_sided.then(|| repulsion_reach(scene.spacing)),
-            materials: scene.materials().map(|material| DensityMaterial::new(material, scene, rest_response)).collect(),
+            repulsion: materials
+                .iter()
+                .any(|material| material.repulsion > 0.0)
+                .then(|| repulsion_reach(scene.spacing)),
+            farthest_shift: shifts.then(|| real(FARTHEST_SHIFT * scene.spacing)),
+            materials,
         }
     }
 }
@@ -109,19 +124,27 @@ impl DensityMaterial {
             scripted_response_min: real(SCRIPTED_RESPONSE_FLOOR * response),
             mixing: real(scene.solver.constraint_mixing * response),
             mass: real(mass),
+            shifting: 0.0,
             repulsion: 0.0,
         };
         if !material.is_two_sided() {
             return one_sided;
         }
-        DensityMaterial {
+        let gas = material.phase() == Phase::Gas;
+        let filled = DensityMaterial {
             relaxation: real(scene.solver.relaxation_of_filled()),
             multiplier_min: Real::NEG_INFINITY,
-            gate: if material.phase() == Phase::Gas { real(GAS_GATE) } else { Real::NEG_INFINITY },
-            response_min: real(GAS_RESPONSE_FLOOR * response),
-            repulsion: real((GAS_REPULSION * lightest).sqrt()),
+            response_min: real(FILLED_RESPONSE_FLOOR * response),
             ..one_sided
+        };
+        if material.phase() == Phase::Gas {
+            // Gas has edges, and streams of it meet: it is held apart by a push that velocities follow.
+            let repulsion = real((GAS_REPULSION * lightest).sqrt());
+            return DensityMaterial { gate: real(GAS_GATE), repulsion, ..filled };
         }
+        // The push is that on the lightest: a heavier particle moves less, and the centre of mass stays.
+        let shifting = scene.solver.shifting_of_filled() / f64::from(scene.solver.iterations.max(1));
+        DensityMaterial { shifting: real(2.0 * shifting / rest_response * (lightest / mass)), ..filled }
     }
 
     /// A material without a density constraint.
@@ -133,8 +156,16 @@ impl DensityMaterial {
         scripted_response_min: 1.0,
         mixing: 0.0,
         mass: 0.0,
+        shifting: 0.0,
         repulsion: 0.0,
     };
+
+    /// How far a particle with this density error is shifted down the gradient [m^2].
+    #[inline]
+    pub fn shift(&self, error: Real) -> Real {
+        let [none, whole] = SHIFT_GATE;
+        self.shifting * ((error - none) / (whole - none)).clamp(0.0, 1.0)
+    }
 }
 
 /// Distances at which a repulsion begins and grows no more.

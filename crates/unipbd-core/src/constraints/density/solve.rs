@@ -71,6 +71,21 @@ impl Density {
         });
     }
 
+    /// Evens out the arrangement: the moves that one pressure everywhere would bring about, without the
+    /// velocities (Adami et al. 2013). Run before [`correct`](Self::correct), which overwrites the sums.
+    pub(super) fn shift(&self, now: Substep<'_>, out: &mut Corrections) {
+        let Some(farthest) = self.settings.farthest_shift else { return };
+        let (sums, walls, errors) = (&self.sums.gradient, &self.wall_gradient, &self.error);
+        let (materials, material_of) = (&self.settings.materials, now.particles.materials());
+        let (volume, inverse_masses) = (self.settings.volume, now.particles.inverse_masses());
+        now.parallelism.update(&mut out.shifts_mut()[..errors.len()], |i, shift| {
+            if inverse_masses[i] > 0.0 {
+                let strength = materials[usize::from(material_of[i])].shift(errors[i]);
+                *shift = ((sums[i] * volume + walls[i]) * -strength).clamp_length_max(farthest);
+            }
+        });
+    }
+
     /// Pass 3: displacements, gathered per row, so that momentum is kept with unequal masses too.
     pub(super) fn correct(&mut self, now: Substep<'_>, out: &mut Corrections) {
         let positions = self.places.pair_gradients(now);

@@ -73,6 +73,10 @@ fn check_solver(checker: &mut Checker) {
     checker.range(path("target_compression"), target, Allowed::Between(1e-6, 0.5), hint);
     let mixing = solver.constraint_mixing;
     checker.range(path("constraint_mixing"), mixing, Allowed::Between(0.0, 10.0), "the default is 0");
+    if let Some(shifting) = solver.shifting {
+        let hint = "leave it out for what is stable; 0 is off";
+        checker.range(path("shifting"), shifting, Allowed::Between(0.0, 0.2), hint);
+    }
     let pressure = solver.artificial_pressure;
     checker.range(path("artificial_pressure"), pressure, Allowed::Between(0.0, 1.0), "the default is 0");
     if let Some(description) = &solver.mass_density {
@@ -103,6 +107,10 @@ fn check_mass_density(checker: &mut Checker, description: &MassDensityDescriptio
     if solver.gradients.is_some_and(|point| point != GradientPoint::Predicted) {
         let message = "a density weighted with masses takes its gradients at the predicted positions";
         checker.problem(key("gradients"), message, "write \"predicted\", or leave it out");
+    }
+    if solver.shifting.is_some() {
+        let message = "has no effect on a density weighted with masses";
+        checker.problem(key("shifting"), message, "leave it out");
     }
     for (name, value) in
         [("constraint_mixing", solver.constraint_mixing), ("artificial_pressure", solver.artificial_pressure)]
