@@ -60,7 +60,7 @@ fn heavy_over_light_overturns_at_the_known_rate() {
 fn vortices_decay_as_fast_as_their_viscosity_says() {
     let error = |solver: &SolverSettings| figure("taylor_green", 50, solver, "kinetic energy error to t = 1");
     let shifted = error(&report::settings(0.01));
-    assert!(shifted <= 0.05, "{shifted}");
+    assert!(shifted <= 0.06, "{shifted}");
     let plain = error(&SolverSettings { shifting: Some(0.0), ..report::settings(0.01) });
     assert!(plain >= 2.0 * shifted, "shifting is what keeps the energy: {plain} without");
 }

@@ -25,6 +25,8 @@ pub struct DensitySettings {
     pub repulsion: Option<Reach>,
     /// Farthest that a particle is shifted in one substep, where any material is [m].
     pub farthest_shift: Option<Real>,
+    /// What goes less far in a substep is shifted less [m].
+    pub whole_shift: Real,
     /// Artificial pressure of Macklin & Müller 2013 [m^2]; 0 is none.
     pub artificial_pressure: Real,
     /// Per material.
@@ -71,6 +73,9 @@ const REPULSION_FULL: f64 = 0.6;
 const GAS_REPULSION: f64 = 0.8;
 /// Nothing is shifted farther than this in one substep [spacings].
 const FARTHEST_SHIFT: f64 = 0.05;
+/// What goes less far in a substep than this is shifted in proportion: an arrangement is strained by the way it
+/// goes, however many substeps that takes, and what rests is left alone [spacings].
+const WHOLE_SHIFT: f64 = 0.1;
 /// Density errors at which shifting ends and is whole: at an edge it would spread into the void.
 const SHIFT_GATE: [Real; 2] = [-0.15, -0.05];
 
@@ -86,6 +91,7 @@ impl DensitySettings {
         let materials = scene.materials().map(|material| DensityMaterial::new(material, scene, rest_response));
         let materials: Vec<DensityMaterial> = materials.collect();
         let shifts = materials.iter().any(|material| material.shifting > 0.0);
+        let repels = materials.iter().any(|material| material.repulsion > 0.0);
         let default_gradients = if two_sided { GradientPoint::Start } else { GradientPoint::Predicted };
         DensitySettings {
             kernel: scene.solver.kernel,
@@ -96,11 +102,9 @@ impl DensitySettings {
             gradients: scene.solver.gradients.unwrap_or(default_gradients),
             uniform_inverse_mass: uniform_mass(scene).map(|mass| real(1.0 / mass)),
             artificial_pressure: real(scene.solver.artificial_pressure * scene.spacing * scene.spacing),
-            repulsion: materials
-                .iter()
-                .any(|material| material.repulsion > 0.0)
-                .then(|| repulsion_reach(scene.spacing)),
+            repulsion: repels.then(|| repulsion_reach(scene.spacing)),
             farthest_shift: shifts.then(|| real(FARTHEST_SHIFT * scene.spacing)),
+            whole_shift: real(WHOLE_SHIFT * scene.spacing),
             materials,
         }
     }
@@ -109,9 +113,6 @@ impl DensitySettings {
 impl DensityMaterial {
     fn new(material: MaterialRef<'_>, scene: &Scene, rest_response: f64) -> Self {
         let mass = material.particle_mass(scene.spacing);
-        // The lightest sets the force of a pair: it gives back the full part, a heavier one less.
-        let two_sided = scene.materials().filter(|material| material.is_two_sided());
-        let lightest = two_sided.map(|material| material.particle_mass(scene.spacing)).fold(f64::INFINITY, f64::min);
         if !material.phase().is_fluid() {
             return DensityMaterial::NONE;
         }
@@ -130,19 +131,20 @@ impl DensityMaterial {
         if !material.is_two_sided() {
             return one_sided;
         }
-        let gas = material.phase() == Phase::Gas;
         let filled = DensityMaterial {
             relaxation: real(scene.solver.relaxation_of_filled()),
             multiplier_min: Real::NEG_INFINITY,
             response_min: real(FILLED_RESPONSE_FLOOR * response),
             ..one_sided
         };
+        // The lightest sets the force: a heavier one moves less.
         if material.phase() == Phase::Gas {
             // Gas has edges, and streams of it meet: it is held apart by a push that velocities follow.
+            let lightest = lightest_mass(scene, |other| other.is_two_sided());
             let repulsion = real((GAS_REPULSION * lightest).sqrt());
             return DensityMaterial { gate: real(GAS_GATE), repulsion, ..filled };
         }
-        // The push is that on the lightest: a heavier particle moves less, and the centre of mass stays.
+        let lightest = lightest_mass(scene, |other| other.is_two_sided() && other.phase() == Phase::Liquid);
         let shifting = scene.solver.shifting_of_filled() / f64::from(scene.solver.iterations.max(1));
         DensityMaterial { shifting: real(2.0 * shifting / rest_response * (lightest / mass)), ..filled }
     }
@@ -166,6 +168,12 @@ impl DensityMaterial {
         let [none, whole] = SHIFT_GATE;
         self.shifting * ((error - none) / (whole - none)).clamp(0.0, 1.0)
     }
+}
+
+/// The smallest mass of a particle of these materials [kg].
+fn lightest_mass(scene: &Scene, counts: impl Fn(&MaterialRef<'_>) -> bool) -> f64 {
+    let masses = scene.materials().filter(counts).map(|material| material.particle_mass(scene.spacing));
+    masses.fold(f64::INFINITY, f64::min)
 }
 
 /// Distances at which a repulsion begins and grows no more.
