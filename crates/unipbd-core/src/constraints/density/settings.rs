@@ -25,7 +25,7 @@ pub struct DensitySettings {
     pub repulsion: Option<Reach>,
     /// Farthest that a particle is shifted in one substep, where any material is [m].
     pub farthest_shift: Option<Real>,
-    /// What goes less far in a substep is shifted less [m].
+    /// Where the fastest goes less far in a substep, all are shifted less [m].
     pub whole_shift: Real,
     /// Artificial pressure of Macklin & Müller 2013 [m^2]; 0 is none.
     pub artificial_pressure: Real,
@@ -73,9 +73,9 @@ const REPULSION_FULL: f64 = 0.6;
 const GAS_REPULSION: f64 = 0.8;
 /// Nothing is shifted farther than this in one substep [spacings].
 const FARTHEST_SHIFT: f64 = 0.05;
-/// What goes less far in a substep than this is shifted in proportion: an arrangement is strained by the way it
-/// goes, however many substeps that takes, and what rests is left alone [spacings].
-const WHOLE_SHIFT: f64 = 0.1;
+/// Where the fastest goes less far in a substep than this, all are shifted in proportion: an arrangement is
+/// strained by the way it goes, however many substeps that takes, and what rests is left alone [spacings].
+const WHOLE_SHIFT: f64 = 0.15;
 /// Density errors at which shifting ends and is whole: at an edge it would spread into the void.
 const SHIFT_GATE: [Real; 2] = [-0.15, -0.05];
 

@@ -78,11 +78,12 @@ impl Density {
         let (sums, walls, errors) = (&self.sums.gradient, &self.wall_gradient, &self.error);
         let (materials, material_of) = (&self.settings.materials, now.particles.materials());
         let (volume, inverse_masses) = (self.settings.volume, now.particles.inverse_masses());
-        let (velocities, per_whole) = (now.particles.velocities(), now.dt / self.settings.whole_shift);
+        let velocities = now.particles.velocities();
+        let fastest = now.parallelism.max(errors.len(), |i| velocities[i].length_squared()).sqrt();
+        let part = smaller(fastest * now.dt / self.settings.whole_shift, 1.0);
         now.parallelism.update(&mut out.shifts_mut()[..errors.len()], |i, shift| {
             if inverse_masses[i] > 0.0 {
-                let way = velocities[i].length() * per_whole;
-                let strength = materials[usize::from(material_of[i])].shift(errors[i]) * smaller(way, 1.0);
+                let strength = materials[usize::from(material_of[i])].shift(errors[i]) * part;
                 let gradient = sums[i] * volume + walls[i];
                 // Beside a wall only along it: across, rows keep a gradient at rest, and what pushed them back
                 // against it in each substep would read as a speed.
