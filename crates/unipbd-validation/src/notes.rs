@@ -60,6 +60,8 @@ pub const NOTES: &[(&str, &str)] = &[
      0.23. The midpoint sum of a lattice behind the wall instead of the integral is lower by 1.6 and 0.9 % at the first \
      two rows for h = 3 dx: liquids would stand lower still. Heavy over light now overturns at 0.91 instead of 0.94 of the \
      exact rate at 48 dx.\n\n\
+     Gas, and liquids without a surface, keep the plain integral: they have no level, and with the steeper one the fronts \
+     of a lock exchange ran at 0.90 instead of 0.92 and more of theory.\n\n\
      What is left of the level at target 1 % (-0.9 % at 10 dx, -0.5 % deeper) is compression, and goes with the target. \
      Bands of level, pressure and draft are meant for targets of 1 % and less; at 4 % these figures are reported only.",
     ),

@@ -63,7 +63,10 @@ impl Density {
         let kernel = Kernel::of(settings.kernel, settings.kernel_radius);
         Density {
             kernel,
-            coverage: Coverage::upholding(&kernel, settings.spacing),
+            coverage: match settings.upheld {
+                true => Coverage::upholding(&kernel, settings.spacing),
+                false => Coverage::new(&kernel),
+            },
             places: Places::new(settings.gradients, settings.spacing),
             settings,
             sums: Sums::default(),

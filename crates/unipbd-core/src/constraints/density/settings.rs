@@ -21,6 +21,9 @@ pub struct DensitySettings {
     pub gradients: GradientPoint,
     /// The inverse mass of all dense particles, where they have but one [1/kg].
     pub uniform_inverse_mass: Option<Real>,
+    /// Whether walls [uphold](crate::walls::Coverage::upholding) the lowest row: of liquids, which have a level. What
+    /// fills its domain has none, and would only be held back along the walls.
+    pub upheld: bool,
     /// Pair repulsion, where there is gas.
     pub repulsion: Option<Reach>,
     /// Farthest that a particle is shifted in one substep, where any material is [m].
@@ -102,6 +105,7 @@ impl DensitySettings {
             gradients: scene.solver.gradients.unwrap_or(default_gradients),
             uniform_inverse_mass: uniform_mass(scene).map(|mass| real(1.0 / mass)),
             artificial_pressure: real(scene.solver.artificial_pressure * scene.spacing * scene.spacing),
+            upheld: !two_sided,
             repulsion: repels.then(|| repulsion_reach(scene.spacing)),
             farthest_shift: shifts.then(|| real(FARTHEST_SHIFT * scene.spacing)),
             whole_shift: real(WHOLE_SHIFT * scene.spacing),
