@@ -1,4 +1,5 @@
-use super::world::{World, at, body, floor, unit_box};
+use super::world::{GRAVITY, World, at, body, floor, unit_box};
+use unipbd_core::Vector64;
 use unipbd_core::bodies::{BodySpec, CollisionFilter, Pose, Surface, Twist};
 use unipbd_core::constraints::contact::ContactSettings;
 use unipbd_core::shapes::{Shape, Wall};
@@ -122,4 +123,22 @@ fn filtered_bodies_pass_through_each_other() {
     world.run(2.0);
     assert!((world.position(1).y - 0.5).abs() < 1e-3, "not listed: passes through");
     assert!((world.position(3).y - 1.5).abs() < 1e-3, "listed by both: stands on it");
+}
+
+#[test]
+fn a_block_that_begins_to_slide_does_not_fall_asleep() {
+    let friction = Surface::with_friction(0.5);
+    let angle = -0.51_f64.atan();
+    let normal = Vector64::from_angle(angle).perp();
+    let slope = Wall::half_plane(Vector64::ZERO, normal, friction);
+    let mut world = World::with_settings(&[slope], ContactSettings::default());
+    let pose = Pose { position: normal * 0.5, angle };
+    world.add(BodySpec { pose, ..body(Shape::rectangle(1.0, 1.0), Vector64::ZERO, friction) });
+    world.run(1.0);
+    let before = world.velocity(0).linear.length();
+    world.run(1.0);
+    let gained = world.velocity(0).linear.length() - before;
+    let exact = GRAVITY * (angle.sin().abs() - 0.5 * angle.cos());
+    println!("gained {gained:.6} m/s in a second, Coulomb says {exact:.6}");
+    assert!((gained / exact - 1.0).abs() < 1e-3);
 }

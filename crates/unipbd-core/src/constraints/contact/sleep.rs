@@ -22,11 +22,16 @@ impl Default for SleepSettings {
     }
 }
 
+/// Speed that a body may gather while it counts as at rest, over the speed below which it does.
+const GATHERED: f64 = 0.25;
+
 /// Rest times of bodies, and which bodies fell asleep together.
 #[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Islands {
     /// How long each body has been at rest [s].
     rest: Vec<f64>,
+    /// Its lowest speed since then [m/s].
+    calmest: Vec<f64>,
     /// The island each sleeping body belongs to.
     island: Vec<u32>,
     touching: Forest,
@@ -38,6 +43,7 @@ pub(super) struct Islands {
 impl Islands {
     pub fn resize(&mut self, bodies: usize) {
         self.rest.resize(bodies, 0.0);
+        self.calmest.resize(bodies, 0.0);
         self.island.resize(bodies, NONE);
     }
 
@@ -125,8 +131,11 @@ impl Islands {
         for id in 0..bodies.len() {
             let velocity = &bodies.velocities[id];
             let speed = velocity.linear.length() + velocity.angular.abs() * bodies.reaches[id];
-            let still = speed < settings.speed && !bodies.pushed[id];
+            // What gathers speed is not at rest, however slow: a block begins to slide like that.
+            let gathers = speed > self.calmest[id] + GATHERED * settings.speed;
+            let still = speed < settings.speed && !bodies.pushed[id] && !gathers;
             self.rest[id] = if still { self.rest[id] + frame_time } else { 0.0 };
+            self.calmest[id] = if still { speed.min(self.calmest[id]) } else { speed };
         }
     }
 
