@@ -2,7 +2,7 @@
 
 use unipbd_core::observe::Severity;
 use unipbd_core::scene::{Block, Liquid, Obstacle, Scene, Slip, Substeps, Tank};
-use unipbd_core::{BuildOptions, Solver};
+use unipbd_core::{BuildOptions, Real, Solver};
 
 const SPACING: f64 = 0.1;
 
@@ -66,6 +66,17 @@ fn nothing_pushes_before_the_first_frame() {
     solver.step_frame().expect("it runs");
     assert!(solver.pressures().iter().any(|pressure| *pressure > 0.0));
     assert!(solver.diagnostics().pressure_max > 0.0);
+}
+
+#[test]
+fn the_largest_pressure_is_that_of_all_pressures() {
+    let mut solver = built(&pool());
+    for _ in 0..60 {
+        solver.step_frame().expect("it runs");
+    }
+    let largest = solver.pressures().iter().copied().fold(0.0, Real::max);
+    let found = solver.diagnostics().pressure_max;
+    assert!(found <= f64::from(largest) && found >= 0.98 * f64::from(largest), "{found} {largest}");
 }
 
 /// A stir with this viscosity, in two substeps per frame.
