@@ -139,6 +139,7 @@ pub(super) fn apply(particles: &mut Particles, corrections: &Corrections, walls:
     // What goes farther than a box is thick may have passed it.
     let thinnest = walls.thinnest() * walls.thinnest();
     let boxes = thinnest.is_finite();
+    let again = turns_out_again(corrections, walls);
     for rows in bands {
         let band = rows.start;
         let (displacement, position) = (&mut particles.displacement[rows.clone()], &mut particles.position[rows]);
@@ -164,7 +165,7 @@ pub(super) fn apply(particles: &mut Particles, corrections: &Corrections, walls:
             for k in 0..position.len() {
                 let meets = distances[k] < 0.0 || (boxes && displacement[k].length_squared() >= thinnest);
                 if meets && inverse_mass[k] > 0.0 && moving.phase[k] != Phase::Smoke {
-                    meet_walls(&mut displacement[k], (moving.start[k], position[k]), walls, |_, _| {});
+                    meet_walls(&mut displacement[k], (moving.start[k], position[k]), walls, again, |_, _| {});
                     position[k] = moving.place(k, displacement[k]);
                 }
             }
@@ -172,8 +173,15 @@ pub(super) fn apply(particles: &mut Particles, corrections: &Corrections, walls:
     }
 }
 
+/// Whether what was turned out of a wall may be in another one. Friction stops a displacement, but not a shift: in a
+/// corner it could let one wall undo the way that the other turns it back.
+fn turns_out_again(corrections: &Corrections, walls: &Walls) -> bool {
+    walls.are_crowded() || !corrections.shifts().is_empty()
+}
+
 /// What [`apply`] will push against the measured walls: minus the momentum it gives, times dt [kg m].
 pub(super) fn load_walls(particles: &Particles, corrections: &mut Corrections, walls: &Walls) {
+    let again = turns_out_again(corrections, walls);
     for row in particles.bands().into_iter().flatten() {
         let inverse_mass = particles.inverse_mass[row];
         if inverse_mass == 0.0 || particles.phase[row] == Phase::Smoke {
@@ -181,7 +189,7 @@ pub(super) fn load_walls(particles: &Particles, corrections: &mut Corrections, w
         }
         let mut displacement = particles.displacement[row] + corrections.displacements()[row];
         let place = particles.start[row] + (displacement + particles.remainder[row]);
-        meet_walls(&mut displacement, (particles.start[row], place), walls, |hit, push| {
+        meet_walls(&mut displacement, (particles.start[row], place), walls, again, |hit, push| {
             if let Some(wall) = hit.measured {
                 corrections.wall_loads_mut()[usize::from(wall)] -= wide(push) / f64::from(inverse_mass);
             }
@@ -195,6 +203,7 @@ fn meet_walls(
     displacement: &mut Vector,
     (start, place): (Vector, Vector),
     walls: &Walls,
+    again: bool,
     mut feel: impl FnMut(&Hit, Vector),
 ) {
     let (mut touches, before) = (false, *displacement);
@@ -211,7 +220,7 @@ fn meet_walls(
             *displacement -= held;
             feel(&hit, -held);
         }
-        if walls.are_crowded() {
+        if again {
             let place = place + (*displacement - before);
             walls.turn_out_again(start, place, |hit, push| {
                 *displacement += push;
