@@ -148,7 +148,8 @@ impl DensityMaterial {
             let repulsion = real((GAS_REPULSION * lightest).sqrt());
             return DensityMaterial { gate: real(GAS_GATE), repulsion, ..filled };
         }
-        let lightest = lightest_mass(scene, |other| other.is_two_sided() && other.phase() == Phase::Liquid);
+        // Beside a light liquid with a surface that is hardly at all: shifting would crush it.
+        let lightest = lightest_mass(scene, |other| other.phase() == Phase::Liquid);
         let shifting = scene.solver.shifting_of_filled() / f64::from(scene.solver.iterations.max(1));
         DensityMaterial { shifting: real(2.0 * shifting / rest_response * (lightest / mass)), ..filled }
     }
