@@ -221,11 +221,6 @@ impl Particles {
         &self.start
     }
 
-    /// What rounding keeps out of the positions [m].
-    pub(crate) fn remainders(&self) -> &[Vector] {
-        &self.remainder
-    }
-
     /// Velocities [m/s].
     pub fn velocities(&self) -> &[Vector] {
         &self.velocity

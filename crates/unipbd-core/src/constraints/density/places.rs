@@ -68,7 +68,7 @@ impl Places {
     fn find_fine(&mut self, now: Substep<'_>) {
         let particles = now.particles;
         let (starts, displacements) = (particles.starts(), &particles.displacement);
-        let (remainders, velocities) = (particles.remainders(), particles.velocities());
+        let (remainders, velocities) = (&particles.remainder, particles.velocities());
         let origin = middle_of(now, starts);
         let back = if self.gradients == GradientPoint::Middle { 0.5 * now.dt } else { 0.0 };
         now.parallelism.fill(&mut self.value, |row| {
@@ -79,7 +79,7 @@ impl Places {
 
     /// The positions as they are after a substep, for differences of them alone, where f32 would spoil those.
     pub fn settled(&self, now: Substep<'_>) -> Option<Vec<Vector>> {
-        let (positions, remainders) = (now.particles.positions(), now.particles.remainders());
+        let (positions, remainders) = (now.particles.positions(), &now.particles.remainder);
         self.is_far(now.particles).then(|| {
             let origin = middle_of(now, positions);
             (0..now.particles.dense()).map(|row| (positions[row] - origin) + remainders[row]).collect()

@@ -85,8 +85,8 @@ impl Density {
         pressures
     }
 
-    /// The largest pressure over density [m^2/s^2]: read where multipliers are large, at a cost that does not grow
-    /// with the number of particles.
+    /// The largest pressure over density [m^2/s^2]: neighbours are visited at [`CANDIDATES`] rows at most, those with
+    /// large multipliers.
     pub(super) fn read_largest_pressure(&self, now: Substep<'_>) -> Real {
         let particles = now.particles;
         let (multipliers, inverse_masses) = (&particles.multiplier, particles.inverse_masses());

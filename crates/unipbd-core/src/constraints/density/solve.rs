@@ -88,7 +88,7 @@ impl Density {
                 // Beside a wall only along it: across, rows keep a gradient at rest, and what pushed them back
                 // against it in each substep would read as a speed.
                 let gradient = if walls[i] == Vector::ZERO { gradient } else { gradient.reject_from(walls[i]) };
-                *shift = (gradient * -strength).clamp_length_max(farthest);
+                *shift = at_most(gradient * -strength, farthest);
             }
         });
     }
