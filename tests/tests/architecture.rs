@@ -17,7 +17,7 @@ const LAYERS: [&[&str]; 13] = [
     &["kernel"],
     &["walls"],
     &["constraints"],
-    &["effects", "sources", "rigid", "sleep"],
+    &["coarse", "effects", "sources", "rigid", "sleep"],
     &["step"],
     &["build", "expect", "state", "edit"],
     &["lib"],

@@ -5,6 +5,7 @@ mod carve;
 mod ropes;
 mod waves;
 
+use crate::coarse::CoarseProjection;
 use crate::constraints::{Adhesion, ConstraintGroup, Density, DensitySettings, MassDensity, ShapeMatching};
 use crate::effects::{
     Baroclinic, Cohesion, Conduction, Drag, Effect, Heating, QuadraticDrag, ShearViscosity, SmokeAdvection, Viscosity,
@@ -97,6 +98,8 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         walls: Walls::new(scene),
         neighbors: Neighbors::new(periodic, reach, real(least_skin), cost),
         cover,
+        coarse: (scene.solver.coarse_projection > 0)
+            .then(|| CoarseProjection::new(real(scene.spacing), scene.solver.coarse_projection)),
         groups,
         effects,
         smoke: (!scene.smoke.is_empty()).then(|| SmokeAdvection::new(scene)),

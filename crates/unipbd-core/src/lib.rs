@@ -16,6 +16,7 @@
 pub mod bodies;
 mod build;
 mod bytes;
+mod coarse;
 pub mod constraints;
 pub mod edit;
 pub mod effects;

@@ -106,6 +106,7 @@ fn set(solver: &mut SolverSettings, key: &str, value: &str) -> Result<(), Box<dy
         "substeps" => solver.substeps = Substeps::Fixed(value.parse()?),
         "iterations" => solver.iterations = value.parse()?,
         "tolerance" => solver.tolerance = value.parse()?,
+        "coarse_projection" => solver.coarse_projection = value.parse()?,
         "kernel_radius" => solver.kernel_radius = value.parse()?,
         "shifting" => solver.shifting = Some(value.parse()?),
         "relaxation" => solver.relaxation = Some(value.parse()?),

@@ -48,6 +48,9 @@ pub struct SolverSettings {
     /// Substeps without gravity before time 0 that bring the start to its rest density: at most this many, fewer
     /// where nothing moves any more. About three times the layers of the deepest liquid bring all of it there.
     pub settle_substeps: u32,
+    /// Steps of the coarse projection before that of the particles: a grid of cells two spacings wide carries the
+    /// smooth part of the pressure; 0 is off.
+    pub coarse_projection: u32,
     /// Whether liquid at rest falls asleep: it is held where it is, at no cost, until something near it moves.
     pub sleep: bool,
 }
@@ -70,6 +73,7 @@ impl Default for SolverSettings {
             artificial_pressure: 0.0,
             mass_density: None,
             settle_substeps: 100,
+            coarse_projection: 0,
             sleep: false,
         }
     }
@@ -167,6 +171,7 @@ read_over_preset! {
     artificial_pressure: f64,
     mass_density: Option<MassDensityDescription>,
     settle_substeps: u32,
+    coarse_projection: u32,
     sleep: bool,
 }
 

@@ -177,11 +177,17 @@ impl World {
                 return vec![0.0; self.parts.particles.len()];
             }
             let now = World::now(&self.parts, &self.rows, &self.clock);
-            let current = self.stages.contains(&Stage::FindNeighbors) && self.parts.neighbors.is_current();
-            let groups = self.parts.groups.iter().filter(|_| current);
+            let groups = self.parts.groups.iter().filter(|_| self.can_read_momentum());
             let measured = groups.filter_map(|group| group.measure_pressure(now)).next();
             measured.unwrap_or_else(|| self.pressures_of_multipliers())
         })
+    }
+
+    /// Whether pressures can be read from the momentum that pairs carry: with neighbours to look at, and where the
+    /// multipliers carry all of it, no grid a part.
+    fn can_read_momentum(&self) -> bool {
+        let listed = self.stages.contains(&Stage::FindNeighbors) && self.parts.neighbors.is_current();
+        listed && self.parts.coarse.is_none()
     }
 
     /// lambda/(m dt^2), as on the lattice at rest: for groups that cannot tell better.
@@ -196,7 +202,7 @@ impl World {
         if self.clock.dt == 0.0 {
             return 0.0;
         }
-        if self.stages.contains(&Stage::FindNeighbors) && self.parts.neighbors.is_current() {
+        if self.can_read_momentum() {
             let now = World::now(&self.parts, &self.rows, &self.clock);
             let measured = self.parts.groups.iter().find_map(|group| group.measure_pressure_max(now));
             if let Some(largest) = measured {

@@ -7,6 +7,8 @@ pub enum Stage {
     Emit,
     /// Velocities take up the body forces, positions are predicted.
     Predict,
+    /// A grid takes the smooth part of the pressure.
+    CoarseProjection,
     /// Bodies are predicted; their contacts and joints are found and solved once; samples follow.
     Contacts,
     /// The neighbour list is made valid for the predicted positions.
@@ -37,6 +39,7 @@ impl Stage {
         match self {
             Stage::Emit => "emit",
             Stage::Predict => "predict",
+            Stage::CoarseProjection => "coarse_projection",
             Stage::Contacts => "contacts",
             Stage::FindNeighbors => "find_neighbors",
             Stage::BeginGroups => "begin_groups",
@@ -56,6 +59,7 @@ impl Stage {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Features {
     pub emitters: bool,
+    pub coarse: bool,
     pub bodies: bool,
     pub neighbors: bool,
     pub groups: bool,
@@ -72,6 +76,7 @@ pub(super) fn pipeline(features: Features) -> Vec<Stage> {
     let stages = [
         (Stage::Emit, features.emitters),
         (Stage::Predict, true),
+        (Stage::CoarseProjection, features.coarse),
         (Stage::Contacts, features.bodies),
         (Stage::FindNeighbors, features.neighbors),
         (Stage::BeginGroups, features.groups),

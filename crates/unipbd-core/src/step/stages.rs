@@ -35,6 +35,7 @@ impl World {
         match stage {
             Stage::Emit => self.emit(),
             Stage::Predict => self.predict(),
+            Stage::CoarseProjection => self.project_coarsely(),
             Stage::Contacts => self.predict_bodies(),
             Stage::FindNeighbors => self.find_neighbors(),
             Stage::BeginGroups => self.begin_groups(),
@@ -65,6 +66,25 @@ impl World {
         let parts = &mut self.parts;
         integrate::predict(&mut parts.particles, &parts.forces, self.clock.dt as Real, parts.parallelism);
         parts.particles.clear_accelerations();
+    }
+
+    fn project_coarsely(&mut self) {
+        let parts = &mut self.parts;
+        let Some(coarse) = &mut parts.coarse else { return };
+        coarse.project(&mut parts.particles, &parts.walls, self.clock.dt as Real, parts.parallelism);
+        if !self.wall_impulses.is_empty() {
+            coarse.push_walls(&parts.particles, &parts.walls, &mut self.wall_impulses);
+        }
+    }
+
+    /// Adds the pressure of the grid to the multipliers that are read as pressures: once per frame, at its end.
+    fn add_coarse_pressure(&mut self) {
+        let parts = &mut self.parts;
+        let last = self.clock.done + 1 == self.clock.substeps;
+        if let Some(coarse) = parts.coarse.as_ref().filter(|_| last) {
+            let per_pressure = self.clock.dt * self.clock.dt / parts.pressure_scale;
+            coarse.add_pressure(&mut parts.particles, self.clock.dt as Real, per_pressure as Real, parts.parallelism);
+        }
     }
 
     fn predict_bodies(&mut self) {
@@ -129,6 +149,7 @@ impl World {
             particles.density_error[..columns.error.len()].copy_from_slice(columns.error);
             particles.multiplier[..columns.multiplier.len()].copy_from_slice(columns.multiplier);
         }
+        self.add_coarse_pressure();
         self.parts.groups = groups;
     }
 

@@ -8,6 +8,7 @@ use super::pipeline::{Features, pipeline};
 use super::substeps::{Choice, SubstepRule};
 use super::timings::Timings;
 use super::{FrameReport, SolverError, Stage};
+use crate::coarse::CoarseProjection;
 use crate::constraints::{ConstraintGroup, Corrections, Needs, Substep};
 use crate::effects::{Changes, Effect, SmokeAdvection};
 use crate::math::{Real, Vector, Vector64};
@@ -32,6 +33,7 @@ pub(crate) struct Parts {
     pub walls: Walls,
     pub neighbors: Neighbors,
     pub cover: Cover,
+    pub coarse: Option<CoarseProjection>,
     pub groups: Vec<Box<dyn ConstraintGroup>>,
     pub effects: Vec<Box<dyn Effect>>,
     pub smoke: Option<SmokeAdvection>,
@@ -170,6 +172,7 @@ impl World {
         let of_effects = parts.effects.iter().map(|effect| effect.needs()).fold(Needs::NOTHING, |a, b| a | b);
         self.stages = pipeline(Features {
             emitters: parts.emitters.is_some(),
+            coarse: parts.coarse.is_some(),
             bodies: parts.rigid.is_some(),
             neighbors: parts.smoke.is_some() || (needs | of_effects).contains(Needs::NEIGHBORS),
             groups: !parts.groups.is_empty(),
@@ -324,7 +327,8 @@ impl World {
         let shared = parts.particles.memory_bytes() + parts.neighbors.memory_bytes() + self.rows.memory_bytes();
         let groups = parts.groups.iter().map(|group| group.memory_bytes()).sum::<usize>();
         let effects = parts.effects.iter().map(|effect| effect.memory_bytes()).sum::<usize>();
-        let room = self.corrections.memory_bytes() + self.changes.memory_bytes() + held(&self.velocities);
+        let coarse = parts.coarse.as_ref().map_or(0, CoarseProjection::memory_bytes);
+        let room = coarse + self.corrections.memory_bytes() + self.changes.memory_bytes() + held(&self.velocities);
         shared + groups + effects + room
     }
 

@@ -86,6 +86,15 @@ impl Walls {
         self.planes.is_empty() && self.rectangles.is_empty()
     }
 
+    /// A place on a wall along each axis, where there is one: grids are laid there [m].
+    pub(crate) fn anchor(&self) -> Vector {
+        let along = |axis: usize| {
+            let wall = self.planes.iter().find(|plane| plane.normal[axis].abs() == 1.0);
+            wall.map_or(0.0, |plane| plane.point[axis])
+        };
+        Vector::new(along(0), along(1))
+    }
+
     /// Names of the walls whose forces are measured.
     pub fn measured(&self) -> &[String] {
         &self.measured

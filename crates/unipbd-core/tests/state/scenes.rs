@@ -100,8 +100,14 @@ pub fn bodies() -> Scene {
     }
 }
 
-pub fn all() -> [(&'static str, Scene); 4] {
-    [("liquid", liquid()), ("plume", plume()), ("mixed", mixed()), ("bodies", bodies())]
+/// The same column with a coarse projection.
+pub fn coarse() -> Scene {
+    let solver = SolverSettings { coarse_projection: 2, substeps: Substeps::Fixed(4), ..SolverSettings::default() };
+    Scene { solver, ..liquid() }
+}
+
+pub fn all() -> [(&'static str, Scene); 5] {
+    [("liquid", liquid()), ("plume", plume()), ("mixed", mixed()), ("bodies", bodies()), ("coarse", coarse())]
 }
 
 pub fn build(scene: &Scene) -> Solver {

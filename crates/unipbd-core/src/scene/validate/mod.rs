@@ -5,6 +5,7 @@
 
 mod bodies;
 mod checker;
+mod coarse;
 mod environment;
 mod finite;
 mod geometry;
@@ -30,6 +31,7 @@ impl Scene {
         let mut checker = Checker::new(self);
         finite::check(&mut checker);
         settings::check(&mut checker);
+        coarse::check(&mut checker);
         environment::check(&mut checker);
         materials::check(&mut checker);
         sources::check(&mut checker);

@@ -1,0 +1,145 @@
+//! A coarse projection before the particle pass: a grid of cells two spacings wide carries the smooth part of the
+//! pressure, and the multipliers of the particles hold only what is left. The number of substeps then follows from
+//! the speed alone, not from the depth.
+//!
+//! A staggered grid (Harlow & Welch 1965) gives changes of velocity to the particles (Brackbill & Ruppel 1986), with
+//! ghost pressures at the free surface (Gibou et al. 2002) and parts of faces at walls (Batty et al. 2007). A second
+//! solution of the same system moves particles, without their velocities, out of cells that are too full. Nothing is
+//! kept from one substep to the next: a saved run goes on bit for bit.
+
+mod lattice;
+mod multigrid;
+mod openings;
+mod system;
+mod transfer;
+
+use crate::bytes::held;
+use crate::math::{Real, Vector, Vector64, wide};
+use crate::parallel::Parallelism;
+use crate::particles::Particles;
+use crate::walls::{Hit, Walls};
+use lattice::Lattice;
+use multigrid::Multigrid;
+use openings::Openings;
+use system::System;
+use transfer::Transfer;
+
+/// Cells of the grid are this many spacings wide: four particles each.
+const CELL: Real = 2.0;
+/// Part of the density error of a cell that the grid takes away in one substep, by moves alone.
+const TAKEN_BACK: Real = 0.1;
+/// Moves of the grid go no farther than this in one substep [spacings].
+const FARTHEST: Real = 0.1;
+
+/// The coarse projection of a scene of one liquid.
+pub(crate) struct CoarseProjection {
+    spacing: Real,
+    /// Steps of the solver for each of both systems.
+    steps: u32,
+    lattice: Lattice,
+    openings: Openings,
+    transfer: Transfer,
+    system: System,
+    multigrid: Multigrid,
+}
+
+impl CoarseProjection {
+    /// For particles of this spacing [m], with this many steps of the solver.
+    pub(crate) fn new(spacing: Real, steps: u32) -> Self {
+        CoarseProjection {
+            spacing,
+            steps,
+            lattice: Lattice::new(CELL * spacing),
+            openings: Openings::default(),
+            transfer: Transfer::default(),
+            system: System::default(),
+            multigrid: Multigrid::default(),
+        }
+    }
+
+    /// Changes the velocities of predicted particles by the pressure of the grid, and moves them along.
+    pub(crate) fn project(&mut self, particles: &mut Particles, walls: &Walls, dt: Real, parallelism: Parallelism) {
+        let area = self.spacing * self.spacing;
+        self.lattice.cover(particles, walls, parallelism);
+        self.openings.measure(&self.lattice, walls, parallelism);
+        self.transfer.gather(&self.lattice, particles, area, parallelism);
+        self.system.read(&self.lattice, &self.openings, self.transfer.fields(), parallelism);
+        let couplings = self.multigrid.finest(&self.lattice);
+        self.system.couple(&self.lattice, &self.openings, couplings, parallelism);
+        self.multigrid.coarsen(parallelism);
+        self.system.demand(&self.lattice, &self.openings, self.transfer.fields(), (dt, TAKEN_BACK), parallelism);
+        self.multigrid.solve(&self.system.divergence, &mut self.system.pressure, self.steps, parallelism);
+        self.multigrid.solve(&self.system.excess, &mut self.system.potential, self.steps, parallelism);
+        self.system.difference(&self.lattice, &self.openings, parallelism);
+        self.push(particles, dt, parallelism);
+    }
+
+    /// Takes the changes of the faces to the particles.
+    fn push(&self, particles: &mut Particles, dt: Real, parallelism: Parallelism) {
+        let (lattice, system, farthest) = (&self.lattice, &self.system, FARTHEST * self.spacing);
+        let (inverse_masses, starts) = (&particles.inverse_mass, &particles.start);
+        let rows = particles.dense();
+        let (velocities, remainders) = (&mut particles.velocity[..rows], &mut particles.remainder[..rows]);
+        let (displacements, positions) = (&mut particles.displacement[..rows], &mut particles.position[..rows]);
+        parallelism.chunks4(velocities, remainders, displacements, positions, |first, velocity, remainder, u, x| {
+            for k in 0..velocity.len() {
+                let start = starts[first + k];
+                let (change, shift) = system.felt(lattice, start);
+                if inverse_masses[first + k] > 0.0 {
+                    velocity[k] += change;
+                    u[k] = velocity[k] * dt;
+                    remainder[k] += shift.clamp(Vector::splat(-farthest), Vector::splat(farthest));
+                    x[k] = start + (u[k] + remainder[k]);
+                }
+            }
+        });
+    }
+
+    /// Adds the pressure of the grid to the multipliers, in their unit: `per_pressure` each, over the inverse mass.
+    pub(crate) fn add_pressure(
+        &self,
+        particles: &mut Particles,
+        dt: Real,
+        per_pressure: Real,
+        parallelism: Parallelism,
+    ) {
+        let (lattice, openings, system) = (&self.lattice, &self.openings, &self.system);
+        let starts = &particles.start;
+        let (rows, inverse_masses) = (particles.dense(), &particles.inverse_mass);
+        let factor = per_pressure * lattice.cell / dt;
+        parallelism.update(&mut particles.multiplier[..rows], |row, multiplier| {
+            if inverse_masses[row] > 0.0 {
+                *multiplier += system.pressure_at(lattice, openings, starts[row]) * factor / inverse_masses[row];
+            }
+        });
+    }
+
+    /// What the pressure of the grid pushes against the measured walls in this substep [kg m/s].
+    pub(crate) fn push_walls(&self, particles: &Particles, walls: &Walls, impulses: &mut [Vector64]) {
+        let Some(inverse_mass) = particles.inverse_mass[..particles.dense()].iter().find(|inverse| **inverse > 0.0)
+        else {
+            return;
+        };
+        let mass = CELL * CELL / inverse_mass;
+        self.system.closed_faces(&self.lattice, &self.openings, |place, outward, push| {
+            let facing = |hit: &Hit| -hit.normal.dot(outward);
+            let walls = walls.touches(place, self.lattice.cell).filter(|hit| facing(hit) > 0.5);
+            if let Some(wall) = walls.max_by(|a, b| facing(a).total_cmp(&facing(b))).and_then(|hit| hit.measured) {
+                impulses[usize::from(wall)] += wide(outward * (push * mass));
+            }
+        });
+    }
+
+    /// Memory held [bytes].
+    pub(crate) fn memory_bytes(&self) -> usize {
+        self.openings.memory_bytes()
+            + self.transfer.memory_bytes()
+            + self.system.memory_bytes()
+            + self.multigrid.memory_bytes()
+    }
+}
+
+/// Memory held by columns [bytes].
+fn held_by(columns: &[&Vec<Real>]) -> usize {
+    columns.iter().map(|column| held(column)).sum()
+}

@@ -1,0 +1,92 @@
+//! Which part of each face and cell walls leave open.
+
+use super::held_by;
+use super::lattice::Lattice;
+use crate::math::{Real, Vector, larger};
+use crate::parallel::Parallelism;
+use crate::walls::Walls;
+
+/// Points along each axis at which the surroundings of a cell near a wall are looked at.
+const SAMPLES: usize = 8;
+/// Cells that are less open than this count as that open: what they hold must not weigh too much.
+const LEAST: Real = 0.25;
+/// A corner nearer to a wall than this is on it [cells].
+const ON_WALL: Real = 1e-2;
+
+/// Open parts, by cell of the lattice they were measured on.
+#[derive(Default)]
+pub(super) struct Openings {
+    of: Lattice,
+    /// Open part of the left face.
+    pub left: Vec<Real>,
+    /// Open part of the lower face.
+    pub lower: Vec<Real>,
+    /// One over the open part of the surroundings of the cell, weighted as particles weigh in it; 0 in walls.
+    pub inverse: Vec<Real>,
+    corners: Vec<Real>,
+}
+
+impl Openings {
+    /// Measures all openings, unless the lattice is still the same: walls stand still.
+    pub fn measure(&mut self, lattice: &Lattice, walls: &Walls, parallelism: Parallelism) {
+        if self.of == *lattice && !self.left.is_empty() {
+            return;
+        }
+        self.of = lattice.clone();
+        let (cells, stride, cell) = (lattice.len(), lattice.stride(), lattice.cell);
+        for column in [&mut self.left, &mut self.lower, &mut self.inverse, &mut self.corners] {
+            column.resize(cells, 0.0);
+        }
+        let distance = |x: Vector| {
+            let mut distance = [Real::INFINITY];
+            walls.distances(&[x], &mut distance);
+            distance[0]
+        };
+        parallelism.fill(&mut self.corners, |k| distance(lattice.corner(k)) - ON_WALL * cell);
+        let corner = |k: usize| self.corners.get(k).copied().unwrap_or(-cell);
+        parallelism.fill(&mut self.left, |k| open_part(corner(k), corner(k + stride)));
+        parallelism.fill(&mut self.lower, |k| open_part(corner(k), corner(k + 1)));
+        let open = |faces: &[Real], at: usize| faces.get(at).is_some_and(|part| *part > 0.0);
+        let (left, lower) = (&self.left, &self.lower);
+        parallelism.fill(&mut self.inverse, |k| {
+            if !(open(left, k) || open(left, k + 1) || open(lower, k) || open(lower, k + stride)) {
+                return 0.0;
+            }
+            let centre = lattice.corner(k) + Vector::splat(0.5 * cell);
+            let near = distance(centre) < 1.5 * cell;
+            if near { 1.0 / larger(open_surroundings(centre, cell, distance), LEAST) } else { 1.0 }
+        });
+    }
+
+    /// Memory held [bytes].
+    pub fn memory_bytes(&self) -> usize {
+        held_by(&[&self.left, &self.lower, &self.inverse, &self.corners])
+    }
+}
+
+/// The part of a straight line outside walls, from the distances of its ends.
+fn open_part(a: Real, b: Real) -> Real {
+    match (a > 0.0, b > 0.0) {
+        (true, true) => 1.0,
+        (false, false) => 0.0,
+        (true, false) => a / (a - b),
+        (false, true) => b / (b - a),
+    }
+}
+
+/// The part outside walls of what weighs in a cell: hats, two cells wide.
+fn open_surroundings(centre: Vector, cell: Real, distance: impl Fn(Vector) -> Real) -> Real {
+    let step = 2.0 / SAMPLES as Real;
+    let place = |k: usize| (k as Real + 0.5) * step - 1.0;
+    let (mut open, mut all) = (0.0, 0.0);
+    for i in 0..SAMPLES {
+        for j in 0..SAMPLES {
+            let weight = (1.0 - place(i).abs()) * (1.0 - place(j).abs());
+            all += weight;
+            if distance(centre + Vector::new(place(i), place(j)) * cell) > 0.0 {
+                open += weight;
+            }
+        }
+    }
+    open / all
+}

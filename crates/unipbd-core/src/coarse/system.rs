@@ -1,0 +1,277 @@
+//! The linear system of the grid: which cells are liquid, how they are coupled, and what is asked of them.
+
+use super::held_by;
+use super::lattice::{CENTRES, LEFT_FACES, LOWER_FACES, Lattice};
+use super::openings::Openings;
+use super::transfer::{Fields, interpolate, mean};
+use crate::bytes::held;
+use crate::math::{Real, Vector, larger};
+use crate::parallel::Parallelism;
+
+/// Least distance of the free surface from a cell, as a part of the distance of two cells.
+const NEAREST_SURFACE: Real = 0.1;
+/// What holds cells without any air near: a hundred-thousandth of their couplings.
+const HELD: Real = 1e-5;
+/// Part of what paths squeeze together, as they curve within a substep, that is looked ahead to.
+const CURVATURE: Real = 0.5;
+/// A place feels the grid wholly where at least this part of its nodes has liquid beside: half above the surface, less
+/// beyond.
+const WHOLLY_FELT: Real = 0.5;
+
+/// Couplings by cell; all are zero where there is no liquid.
+#[derive(Default)]
+pub(super) struct Couplings {
+    /// With the cell to the right.
+    pub right: Vec<Real>,
+    /// With the cell above.
+    pub upper: Vec<Real>,
+    /// With air.
+    pub air: Vec<Real>,
+    /// 1 where there is room for a fluid, 0 within walls.
+    pub room: Vec<Real>,
+}
+
+/// The system of one substep, by cell.
+#[derive(Default)]
+pub(super) struct System {
+    /// Distance from the free surface, in cells: not negative within the liquid.
+    depth: Vec<Real>,
+    /// Velocity along x at left faces, and along y at lower ones [m/s].
+    along_x: Vec<Real>,
+    along_y: Vec<Real>,
+    /// What flows together in each cell [m/s].
+    pub divergence: Vec<Real>,
+    /// What each cell holds too much [m].
+    pub excess: Vec<Real>,
+    /// What is found for both: its differences are changes of velocity [m/s] and moves [m].
+    pub pressure: Vec<Real>,
+    pub potential: Vec<Real>,
+    /// At left and lower faces: change of velocity, move, and 1 where there is liquid.
+    faces: [Vec<[Real; 4]>; 2],
+}
+
+impl System {
+    /// Reads the surface and the velocities from the sums of the particles.
+    pub fn read(&mut self, lattice: &Lattice, openings: &Openings, fields: &Fields, parallelism: Parallelism) {
+        self.resize(lattice.len());
+        let (depth, along_x, along_y) = (&mut self.depth, &mut self.along_x, &mut self.along_y);
+        parallelism.chunks3(depth, along_x, along_y, |first, depth, along_x, along_y| {
+            let rows = first..first + depth.len();
+            let (left, lower) = (&fields.left[rows.clone()], &fields.lower[rows.clone()]);
+            let (centre, inverse) = (&fields.centre[rows.clone()], &openings.inverse[rows]);
+            for k in 0..depth.len() {
+                depth[k] = depth_of(centre[k][1] * inverse[k]);
+                (along_x[k], along_y[k]) = (mean(left[k]), mean(lower[k]));
+            }
+        });
+        // Around the box there is nothing, whatever spilled over.
+        let (stride, cells) = (lattice.stride(), lattice.len());
+        let sides = (0..cells).step_by(stride).flat_map(|row| [row, row + stride - 1]);
+        for rim in sides.chain(0..stride).chain(cells - stride..cells) {
+            self.depth[rim] = -1.0;
+        }
+    }
+
+    /// Sets the couplings of the cells.
+    pub fn couple(&self, lattice: &Lattice, openings: &Openings, out: &mut Couplings, parallelism: Parallelism) {
+        let (stride, depth) = (lattice.stride(), &self.depth);
+        let (left, lower) = (&openings.left, &openings.lower);
+        parallelism.fill(&mut out.room, |k| if openings.inverse[k] > 0.0 { 1.0 } else { 0.0 });
+        parallelism.chunks3(&mut out.right, &mut out.upper, &mut out.air, |first, right, upper, air| {
+            for k in 0..right.len() {
+                let cell = first + k;
+                (right[k], upper[k], air[k]) = (0.0, 0.0, 0.0);
+                if depth[cell] < 0.0 {
+                    continue;
+                }
+                let mut to = |other: usize, open: Real| {
+                    let liquid = depth[other] >= 0.0;
+                    air[k] += if liquid { 0.0 } else { open * ghost(depth[cell], depth[other]) };
+                    if liquid { open } else { 0.0 }
+                };
+                right[k] = to(cell + 1, left[cell + 1]);
+                upper[k] = to(cell + stride, lower[cell + stride]);
+                to(cell - 1, left[cell]);
+                to(cell - stride, lower[cell]);
+                air[k] += HELD;
+            }
+        });
+    }
+
+    /// Sets what the pressure is to undo within a substep of length `dt` [s], and the part of what is too much that
+    /// moves are to take back.
+    pub fn demand(
+        &mut self,
+        lattice: &Lattice,
+        openings: &Openings,
+        fields: &Fields,
+        (dt, taken_back): (Real, Real),
+        parallelism: Parallelism,
+    ) {
+        let (depth, curving) = (&self.depth, CURVATURE * 0.5 * dt / lattice.cell);
+        let flow = Flow { u: &self.along_x, v: &self.along_y, stride: lattice.stride() };
+        parallelism.chunks2(&mut self.divergence, &mut self.excess, |first, divergence, excess| {
+            for k in 0..divergence.len() {
+                let cell = first + k;
+                (divergence[k], excess[k]) = (0.0, 0.0);
+                if depth[cell] >= 0.0 {
+                    divergence[k] = -flow.out_of(cell, openings);
+                    if flow.neighbors(cell).into_iter().all(|other| depth[other] >= 0.0) {
+                        divergence[k] += curving * flow.squeeze(cell);
+                    }
+                    excess[k] = taken_back * lattice.cell * mean(fields.centre[cell]);
+                }
+            }
+        });
+    }
+
+    /// Takes both solutions to the faces.
+    pub fn difference(&mut self, lattice: &Lattice, openings: &Openings, parallelism: Parallelism) {
+        let (depth, pressure, potential) = (&self.depth, &self.pressure, &self.potential);
+        let open = [&openings.left, &openings.lower];
+        for ((faces, open), back) in self.faces.iter_mut().zip(open).zip([1, lattice.stride()]) {
+            let difference = |k: usize| {
+                let (before, here) = (depth[k - back], depth[k]);
+                let gain = match (before >= 0.0, here >= 0.0) {
+                    _ if open[k] == 0.0 => return None,
+                    (false, false) => return None,
+                    (true, true) => 1.0,
+                    (true, false) => ghost(before, here),
+                    (false, true) => ghost(here, before),
+                };
+                let [of_pressure, of_potential] = [pressure, potential].map(|field| field[k - back] - field[k]);
+                Some([gain * of_pressure, gain * of_potential, 1.0, 0.0])
+            };
+            let inner = 2 * back..lattice.len() - back;
+            parallelism.update(faces, |k, face| {
+                // A wall is felt as the next face away from it is.
+                *face = match inner.contains(&k) {
+                    false => None,
+                    true if open[k] > 0.0 => difference(k),
+                    true if depth[k] >= 0.0 => difference(k + back),
+                    true if depth[k - back] >= 0.0 => difference(k - back),
+                    true => None,
+                }
+                .unwrap_or_default();
+            });
+        }
+    }
+
+    /// The change of velocity [m/s] and the move [m] that a place feels.
+    #[inline(always)]
+    pub fn felt(&self, lattice: &Lattice, x: Vector) -> (Vector, Vector) {
+        let place = lattice.place(x);
+        if !lattice.holds(place) {
+            return (Vector::ZERO, Vector::ZERO);
+        }
+        let stride = lattice.stride();
+        let [u, shift_x, left, _] = interpolate(&self.faces[0], stride, lattice.nodes(place, LEFT_FACES));
+        let [v, shift_y, lower, _] = interpolate(&self.faces[1], stride, lattice.nodes(place, LOWER_FACES));
+        let per = Vector::new(1.0 / larger(left, WHOLLY_FELT), 1.0 / larger(lower, WHOLLY_FELT));
+        (Vector::new(u, v) * per, Vector::new(shift_x, shift_y) * per)
+    }
+
+    /// The pressure at a place, in the unit of the solution [m/s]: air has none, walls that beside them.
+    pub fn pressure_at(&self, lattice: &Lattice, openings: &Openings, x: Vector) -> Real {
+        let place = lattice.place(x);
+        if !lattice.holds(place) {
+            return 0.0;
+        }
+        let (nodes, stride) = (lattice.nodes(place, CENTRES), lattice.stride());
+        let cells = [nodes.first, nodes.first + 1, nodes.first + stride, nodes.first + stride + 1];
+        let (mut sum, mut weights) = (0.0, 0.0);
+        for (cell, weight) in cells.into_iter().zip(nodes.weights).filter(|(cell, _)| openings.inverse[*cell] > 0.0) {
+            sum += weight * self.pressure[cell];
+            weights += weight;
+        }
+        if weights > 0.0 { sum / weights } else { 0.0 }
+    }
+
+    /// The closed parts of all faces of the liquid: the middle of the face, the way out of the liquid, and the
+    /// pressure times the closed part [m/s].
+    pub fn closed_faces(&self, lattice: &Lattice, openings: &Openings, mut visit: impl FnMut(Vector, Vector, Real)) {
+        let (stride, half) = (lattice.stride(), 0.5 * lattice.cell);
+        for cell in (0..lattice.len()).filter(|&cell| self.depth[cell] >= 0.0) {
+            let centre = lattice.corner(cell) + Vector::splat(half);
+            let faces = [
+                (openings.left[cell], Vector::NEG_X),
+                (openings.left[cell + 1], Vector::X),
+                (openings.lower[cell], Vector::NEG_Y),
+                (openings.lower[cell + stride], Vector::Y),
+            ];
+            for (open, outward) in faces.into_iter().filter(|(open, _)| *open < 1.0) {
+                visit(centre + outward * half, outward, (1.0 - open) * self.pressure[cell]);
+            }
+        }
+    }
+
+    fn resize(&mut self, cells: usize) {
+        for column in [
+            &mut self.depth,
+            &mut self.along_x,
+            &mut self.along_y,
+            &mut self.divergence,
+            &mut self.excess,
+            &mut self.pressure,
+            &mut self.potential,
+        ] {
+            column.resize(cells, 0.0);
+        }
+        self.faces.iter_mut().for_each(|faces| faces.resize(cells, [0.0; 4]));
+    }
+
+    /// Memory held [bytes].
+    pub fn memory_bytes(&self) -> usize {
+        held_by(&[&self.depth, &self.along_x, &self.along_y, &self.divergence, &self.excess])
+            + held_by(&[&self.pressure, &self.potential])
+            + self.faces.iter().map(|faces| held(faces)).sum::<usize>()
+    }
+}
+
+/// Velocities at the faces of cells.
+struct Flow<'a> {
+    u: &'a [Real],
+    v: &'a [Real],
+    stride: usize,
+}
+
+impl Flow<'_> {
+    fn neighbors(&self, cell: usize) -> [usize; 4] {
+        [cell - 1, cell + 1, cell - self.stride, cell + self.stride]
+    }
+
+    /// What flows out of a cell.
+    fn out_of(&self, cell: usize, open: &Openings) -> Real {
+        let (right, upper) = (cell + 1, cell + self.stride);
+        (self.u[right] * open.left[right] - self.u[cell] * open.left[cell])
+            + (self.v[upper] * open.lower[upper] - self.v[cell] * open.lower[cell])
+    }
+
+    /// The trace of the squared velocity gradient, in cells: what paths that curve squeeze together.
+    fn squeeze(&self, cell: usize) -> Real {
+        let middle =
+            |cell: usize| Vector::new(self.u[cell] + self.u[cell + 1], self.v[cell] + self.v[cell + self.stride]) * 0.5;
+        let [left, right, lower, upper] = self.neighbors(cell).map(middle);
+        let (along_x, along_y) = (right - left, upper - lower);
+        let (ux, vy) = (self.u[cell + 1] - self.u[cell], self.v[cell + self.stride] - self.v[cell]);
+        ux * ux + vy * vy + 0.5 * along_x.y * along_y.x
+    }
+}
+
+/// Distance from a flat free surface, in cells, of a cell that is filled so far; exact along an axis.
+#[inline(always)]
+fn depth_of(fill: Real) -> Real {
+    let missing = 1.0 - fill;
+    if missing <= 0.0 {
+        1.0
+    } else if fill < 0.5 {
+        (2.0 * fill).sqrt() - 1.0
+    } else {
+        1.0 - (2.0 * missing).sqrt()
+    }
+}
+
+/// What a pressure beside air counts: it is zero where the surface is, not at the centre of the next cell.
+fn ghost(liquid: Real, air: Real) -> Real {
+    1.0 / (liquid / (liquid - air)).clamp(NEAREST_SURFACE, 1.0)
+}
