@@ -22,19 +22,33 @@ impl Runs for Ours {
     }
 }
 
-/// unipbd, with this kernel radius over the spacing and as many substeps as it wants for this target compression.
-pub fn unipbd(case: &Case, radius: f64, target: f64, threads: usize) -> Outcome {
+/// A setting of unipbd.
+#[derive(Clone, Copy)]
+pub struct Setting {
+    /// Kernel radius over the spacing.
+    pub radius: f64,
+    /// Target compression: it takes as many substeps as that wants.
+    pub target: f64,
+    /// Whether a coarse projection goes before that of the particles.
+    pub coarse: bool,
+}
+
+/// unipbd with a setting, on one thread.
+pub fn unipbd(case: &Case, setting: Setting) -> Outcome {
+    let Setting { radius, target, coarse } = setting;
+    let solver = SolverSettings { kernel_radius: radius, target_compression: target, ..SolverSettings::default() };
     let scene = Scene {
         spacing: case.dx,
         liquid: vec![Liquid::new("water", 1000.0)],
         block: vec![Block::new("water", [0.0, 0.0], case.block)],
         tank: vec![Tank::new([0.0, 0.0], case.tank)],
-        solver: SolverSettings { kernel_radius: radius, target_compression: target, ..SolverSettings::default() },
+        solver: SolverSettings { coarse_projection: if coarse { 2 } else { 0 }, ..solver },
         ..Scene::default()
     };
-    let options = BuildOptions { threads: Some(threads), ..BuildOptions::default() };
+    let options = BuildOptions { threads: Some(1), ..BuildOptions::default() };
     let solver = scene.build(options).unwrap_or_else(|problems| panic!("{problems}"));
-    run(case, format!("unipbd, h = {radius} dx, target {} %", 100.0 * target), &mut Ours(solver))
+    let name = if coarse { "unipbd, coarse projection" } else { "unipbd" };
+    run(case, format!("{name}, h = {radius} dx, target {} %", 100.0 * target), &mut Ours(solver))
 }
 
 struct Salva {

@@ -1,7 +1,7 @@
 //! unipbd beside other solvers, in one run: `benches/peers.sh` prepares all of them and starts this.
 //!
 //! `unipbd-peers [--particles 5000,20000] [--seconds 2] [--bodies 5000] [--rows 100] [--only liquids|bodies] [--pbf yes]
-//! [--radius 3,2] [--peers dfsph,salva,taichi] [--substeps 4x1,3x2]`
+//! [--radius 3,2] [--coarse no,yes] [--peers dfsph,salva,taichi] [--substeps 4x1,3x2]`
 
 mod case;
 mod chart;
@@ -12,6 +12,7 @@ mod rigid;
 use std::io::Write;
 
 use case::{Case, Outcome};
+use liquids::Setting;
 use rigid::{Kind, Settled};
 
 /// Target compressions that unipbd tries, the loosest first.
@@ -56,8 +57,12 @@ fn liquids_table(case: &Case, bars: &mut Vec<(String, f64)>) {
     println!("## {} of {particles} particles, {} s\n", case.name, case.seconds);
     let radii = option("--radius", "3,2");
     let radii = radii.split(',').map(|radius| radius.parse::<f64>().expect("--radius takes numbers"));
+    let coarse = option("--coarse", "no,yes");
+    let coarse: Vec<bool> = coarse.split(',').map(|word| word == "yes").collect();
     let settings = radii.flat_map(|radius| TARGETS.map(|target| (radius, target)));
-    let ours: Vec<Outcome> = settings.map(|(radius, target)| liquids::unipbd(case, radius, target, 1)).collect();
+    let settings =
+        settings.flat_map(|(radius, target)| coarse.iter().map(move |&coarse| Setting { radius, target, coarse }));
+    let ours: Vec<Outcome> = settings.map(|setting| liquids::unipbd(case, setting)).collect();
     let dt = (0.1 * case.dx).min(0.002);
     let asked = option("--peers", "dfsph,salva,taichi");
     let asked = |name: &str| asked.split(',').any(|peer| peer == name);

@@ -77,11 +77,12 @@ impl Lattice {
         let limit = CELLS_PER_ROW * rows as f64 + CELLS_BESIDE;
         // What flew far off falls freely: the box stays around the lower left of the rest.
         if width * height > limit {
-            height = height.min((limit / width).max(limit.sqrt())).floor();
-            width = width.min(limit / height).floor();
+            height = height.min((limit / width).max(limit.sqrt()));
+            width = width.min(limit / height);
         }
+        let even = |cells: f64| 2 * (0.5 * cells) as usize;
         self.lower = Vector::new(x.0 as Real, y.0 as Real);
-        (self.width, self.height) = (width as usize, height as usize);
+        (self.width, self.height) = (even(width), even(height));
     }
 
     /// A place in cells from the lower left corner of the box.

@@ -3,8 +3,9 @@
 use super::held_by;
 use super::lattice::Lattice;
 use super::system::Couplings;
+use crate::bytes::held;
 use crate::math::Real;
-use crate::parallel::Parallelism;
+use crate::parallel::{CHUNK_ROWS, Parallelism};
 use std::ops::Range;
 
 /// Relaxation of the Jacobi sweeps: evens out best what the next grid cannot see.
@@ -34,6 +35,8 @@ struct Level {
     relax: Vec<Real>,
     /// One over the weights of the coarser cells with room around a cell; 0 where there is no liquid.
     scale: Vec<Real>,
+    /// Which chunks of cells hold any liquid: all others stay zero.
+    liquid: Vec<bool>,
     right_side: Vec<Real>,
     x: Vec<Real>,
     other: Vec<Real>,
@@ -44,13 +47,13 @@ impl Multigrid {
     pub fn finest(&mut self, lattice: &Lattice) -> &mut Couplings {
         let (mut width, mut height, mut count) = (lattice.width, lattice.height, 1);
         while width.max(height) > COARSEST {
-            (width, height, count) = (width.div_ceil(2), height.div_ceil(2), count + 1);
+            (width, height, count) = (coarser(width), coarser(height), count + 1);
         }
         self.levels.resize_with(count, Level::default);
         (width, height) = (lattice.width, lattice.height);
         for level in &mut self.levels {
             level.resize(width, height);
-            (width, height) = (width.div_ceil(2), height.div_ceil(2));
+            (width, height) = (coarser(width), coarser(height));
         }
         self.direction.resize(lattice.len(), 0.0);
         self.image.resize(lattice.len(), 0.0);
@@ -188,6 +191,8 @@ impl Level {
         });
         let total = &self.total;
         parallelism.fill(&mut self.relax, |k| if total[k] > 0.0 { RELAXATION / total[k] } else { 0.0 });
+        self.liquid.clear();
+        self.liquid.extend(total.chunks(CHUNK_ROWS).map(|chunk| chunk.iter().any(|&total| total > 0.0)));
     }
 
     /// Cells of the coarser grid around a cell, and their weights (bilinear).
@@ -224,29 +229,23 @@ impl Level {
         self.x = x;
     }
 
-    /// Gives the residual, held in `other`, to the coarser grid: the transpose of [`prolong`](Self::prolong).
+    /// Gives the residual, which [`residual`](Self::residual) left scaled in `other`, to the coarser grid: the
+    /// transpose of [`prolong`](Self::prolong).
     fn restrict(&self, coarse: &mut Level, parallelism: Parallelism) {
-        const WEIGHTS: [Real; 4] = [0.25, 0.75, 0.75, 0.25];
-        let (stride, width, height) = (coarse.stride(), coarse.width, coarse.height);
-        let relax = &coarse.relax;
+        let (stride, coarse_stride, relax) = (self.stride(), coarse.stride(), &coarse.relax);
+        let along_row = |first: usize| {
+            let four = &self.other[first..first + 4];
+            0.25 * (four[0] + four[3]) + 0.75 * (four[1] + four[2])
+        };
         parallelism.fill(&mut coarse.right_side, |k| {
             if relax[k] == 0.0 {
                 return 0.0;
             }
-            let (i, j) = (2 * (k % stride - 1), 2 * (k / stride - 1));
-            debug_assert!(i < 2 * width && j < 2 * height);
-            let mut sum = 0.0;
-            for (row, weight) in WEIGHTS.into_iter().enumerate() {
-                // One row and column of the rim, where the scale is zero.
-                if j + row > self.height + 1 {
-                    break;
-                }
-                let first = (j + row) * self.stride() + i;
-                let columns = 4.min(self.stride() - i);
-                let row = (first..first + columns).zip(WEIGHTS).map(|(at, w)| w * self.scale[at] * self.other[at]);
-                sum += weight * row.sum::<Real>();
-            }
-            sum
+            let (i, j) = (k % coarse_stride - 1, k / coarse_stride - 1);
+            let first = 2 * (j * stride + i);
+            let (outer, inner) = ([first, first + 3 * stride], [first + stride, first + 2 * stride]);
+            let [a, b, c, d] = [outer[0], outer[1], inner[0], inner[1]].map(along_row);
+            0.25 * (a + b) + 0.75 * (c + d)
         });
     }
 
@@ -255,11 +254,13 @@ impl Level {
         self.stencil(x, out, parallelism, |_, x, total, coupled| total * x - coupled);
     }
 
-    /// What is left of the right side, into `other`.
+    /// What is left of the right side, scaled for the coarser grid, into `other`.
     fn residual(&mut self, parallelism: Parallelism) {
         let mut other = std::mem::take(&mut self.other);
-        let right_side = &self.right_side;
-        self.stencil(&self.x, &mut other, parallelism, |k, x, total, coupled| right_side[k] - (total * x - coupled));
+        let (right_side, scale) = (&self.right_side, &self.scale);
+        self.stencil(&self.x, &mut other, parallelism, |k, x, total, coupled| {
+            scale[k] * (right_side[k] - (total * x - coupled))
+        });
         self.other = other;
     }
 
@@ -293,7 +294,7 @@ impl Level {
         let (right, upper, total) = (&self.couplings.right, &self.couplings.upper, &self.total);
         parallelism.chunks(out, |first, out| {
             let (low, high) = (stride.max(first), (cells - stride).min(first + out.len()));
-            if low >= high {
+            if low >= high || !self.liquid[first / CHUNK_ROWS] {
                 out.fill(0.0);
                 return;
             }
@@ -317,7 +318,13 @@ impl Level {
         let couplings = &self.couplings;
         held_by(&[&couplings.right, &couplings.upper, &couplings.air, &couplings.room])
             + held_by(&[&self.total, &self.relax, &self.scale, &self.right_side, &self.x, &self.other])
+            + held(&self.liquid)
     }
+}
+
+/// Cells of the next grid along an axis of this many: as even a number, so that all cells have their parts.
+fn coarser(cells: usize) -> usize {
+    (cells / 2 + 1) & !1
 }
 
 /// The sum of products, in an order that depends on nothing but the length.
