@@ -5,7 +5,7 @@ use super::lattice::{CENTRES, LEFT_FACES, LOWER_FACES, Lattice};
 use super::openings::Openings;
 use super::transfer::{Fields, interpolate, mean};
 use crate::bytes::held;
-use crate::math::{Real, Vector, larger};
+use crate::math::{Real, Vector, larger, smaller};
 use crate::parallel::Parallelism;
 
 /// Least distance of the free surface from a cell, as a part of the distance of two cells.
@@ -14,6 +14,11 @@ const NEAREST_SURFACE: Real = 0.1;
 const HELD: Real = 1e-5;
 /// Part of what paths squeeze together, as they curve within a substep, that is looked ahead to.
 const CURVATURE: Real = 0.5;
+/// Cells within the liquid that are filled less than this are drawn together: spray that fell into itself is no
+/// liquid yet...
+const POROUS: Real = 0.9;
+/// ...where it is as full all around: across a surface the neighbours differ by more than this.
+const SLANTED: Real = 0.3;
 /// A place feels the grid wholly where at least this part of its nodes has liquid beside: half above the surface, less
 /// beyond.
 const WHOLLY_FELT: Real = 0.5;
@@ -114,13 +119,20 @@ impl System {
             for k in 0..divergence.len() {
                 let cell = first + k;
                 (divergence[k], excess[k]) = (0.0, 0.0);
-                if depth[cell] >= 0.0 {
-                    divergence[k] = -flow.out_of(cell, openings);
-                    if flow.neighbors(cell).into_iter().all(|other| depth[other] >= 0.0) {
-                        divergence[k] += curving * flow.squeeze(cell);
-                    }
-                    excess[k] = taken_back * lattice.cell * mean(fields.centre[cell]);
+                if depth[cell] < 0.0 {
+                    continue;
                 }
+                divergence[k] = -flow.out_of(cell, openings);
+                let mut too_much = mean(fields.centre[cell]);
+                if flow.neighbors(cell).into_iter().all(|other| depth[other] >= 0.0) {
+                    divergence[k] += curving * flow.squeeze(cell);
+                    let fill = |cell: usize| fields.centre[cell][1] * openings.inverse[cell];
+                    let [left, right, lower, upper] = flow.neighbors(cell).map(fill);
+                    if (left - right).abs() + (lower - upper).abs() < SLANTED {
+                        too_much += smaller(fill(cell) - POROUS, 0.0);
+                    }
+                }
+                excess[k] = taken_back * lattice.cell * too_much;
             }
         });
     }
@@ -224,7 +236,7 @@ impl System {
     pub fn memory_bytes(&self) -> usize {
         held_by(&[&self.depth, &self.along_x, &self.along_y, &self.divergence, &self.excess])
             + held_by(&[&self.pressure, &self.potential])
-            + self.faces.iter().map(|faces| held(faces)).sum::<usize>()
+            + self.faces.iter().map(held).sum::<usize>()
     }
 }
 
