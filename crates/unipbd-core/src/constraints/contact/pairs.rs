@@ -3,7 +3,8 @@
 use super::broad;
 use super::manifold::entry;
 use super::pieces::{Bounds, NONE, Pieces};
-use crate::bodies::{Bodies, Pose, Surface};
+use crate::bodies::{Bodies, Surface};
+use crate::math::Vector64;
 
 /// Two pieces, or a piece and a half-plane, that may touch.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
@@ -51,22 +52,46 @@ impl Span {
     }
 }
 
-/// When what touches in a pair was sought, in terms of motion.
+/// Where the bodies of a pair are to each other.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Relation {
+    /// From the centre of mass of the second body to that of the first [m].
+    offset: Vector64,
+    angles: [f64; 2],
+}
+
+/// Where the bodies were when what touches was sought, and with what.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Sought {
-    /// How far both had come by then [m].
-    pub way: f64,
+    pub at: Relation,
     /// Gap below which contacts were found [m].
     pub margin: f64,
-    /// How far they may move until it is no longer known what touches [m].
+    /// How far they may move against each other until it is no longer known what touches [m].
     pub room: f64,
 }
 
-impl Sought {
-    pub const NEVER: Sought = Sought { way: 0.0, margin: f64::NEG_INFINITY, room: f64::NEG_INFINITY };
+impl Relation {
+    pub fn of((a, b): (u32, u32), bodies: &Bodies) -> Relation {
+        let (a, b) = (entry(&bodies.poses, a), entry(&bodies.poses, b));
+        Relation { offset: a.position - b.position, angles: [a.angle, b.angle] }
+    }
+
+    /// How far any two points of the bodies have moved against each other since, at most [m].
+    pub fn way(&self, since: &Relation, (a, b): (u32, u32), bodies: &Bodies) -> f64 {
+        let turned = |k: usize, body: u32| (self.angles[k] - since.angles[k]).abs() * entry(&bodies.reaches, body);
+        (self.offset - since.offset).length() + turned(0, a) + turned(1, b)
+    }
 }
 
-/// All pairs that may touch, and how far bodies can and did move.
+impl Sought {
+    pub const NEVER: Sought = Sought {
+        at: Relation { offset: Vector64::ZERO, angles: [0.0; 2] },
+        margin: f64::NEG_INFINITY,
+        room: f64::NEG_INFINITY,
+    };
+}
+
+/// All pairs that may touch, and how far bodies can move.
 #[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Pairs {
     excluded: Vec<(u32, u32)>,
@@ -83,9 +108,6 @@ pub(super) struct Pairs {
     own_reach: Vec<f64>,
     /// The same for it or any body near it, which may hit it.
     pub reach: Vec<f64>,
-    /// Length of the way that the fastest point of each body has come, at most [m].
-    pub ways: Vec<f64>,
-    last_poses: Vec<Pose>,
 }
 
 impl Pairs {
@@ -107,23 +129,11 @@ impl Pairs {
 
     /// Makes the list hold all pairs that can touch in a substep of length `dt`.
     pub fn update(&mut self, pieces: &Pieces, bodies: &Bodies, dt: f64, gravity: f64) {
-        self.follow(bodies);
         self.estimate_reach(bodies, dt, gravity);
         if !self.hold(pieces, bodies) {
             self.pair_up(pieces, bodies);
         } else if (0..bodies.len()).any(|id| self.was_active[id] != bodies.is_active(id)) {
             self.list_active(bodies);
-        }
-    }
-
-    /// Adds to the ways what the bodies have moved since the last call.
-    fn follow(&mut self, bodies: &Bodies) {
-        self.ways.resize(bodies.len(), 0.0);
-        self.last_poses.extend_from_slice(&bodies.poses[self.last_poses.len()..]);
-        for (id, (last, pose)) in self.last_poses.iter_mut().zip(&bodies.poses).enumerate() {
-            let turned = (pose.angle - last.angle).abs() * bodies.reaches[id];
-            self.ways[id] += (pose.position - last.position).length() + turned;
-            *last = *pose;
         }
     }
 

@@ -3,7 +3,7 @@
 use super::find::{Found, Moment};
 use super::manifold::{Contact, Site, entry};
 use super::narrow::{self, Finding, Place, Touch};
-use super::pairs::{Kind, Pair, Pairs, Sought, Span};
+use super::pairs::{Kind, Pair, Pairs, Relation, Sought, Span};
 use super::pieces::Pieces;
 use crate::bodies::Bodies;
 use crate::math::Vector64;
@@ -35,7 +35,7 @@ impl Search<'_> {
             Kind::DiscOnPlane => self.seek(index, pair, margin, out),
             Kind::OnPlane | Kind::Pieces => {
                 let sought = &self.pairs.sought[index as usize];
-                let way = self.way(pair) - sought.way;
+                let way = Relation::of(pair.bodies, self.bodies).way(&sought.at, pair.bodies, self.bodies);
                 let known = way <= sought.room && way + margin <= sought.margin;
                 if known && self.measure(index, pair, out) {
                     return;
@@ -45,10 +45,6 @@ impl Search<'_> {
             }
         }
         self.hand_on(self.pairs.spans[index as usize], start, out);
-    }
-
-    fn way(&self, pair: &Pair) -> f64 {
-        entry(&self.pairs.ways, pair.bodies.0) + entry(&self.pairs.ways, pair.bodies.1)
     }
 
     /// Measures what touched in the last substep. Tells whether that is still one contact where it was.
@@ -98,7 +94,7 @@ impl Search<'_> {
     fn seek(&self, index: u32, pair: &Pair, margin: f64, out: &mut Found) {
         let mut touches = std::mem::take(&mut out.touches);
         touches.clear();
-        let (way, mut margin) = (self.way(pair), margin);
+        let mut margin = margin;
         let room = match self.pieces.half_plane(pair.pieces.1) {
             Some(plane) => {
                 narrow::against_half_plane(&self.pieces.view(pair.pieces.0), plane, margin, &mut touches);
@@ -127,7 +123,7 @@ impl Search<'_> {
         }
         out.touches = touches;
         if pair.kind != Kind::DiscOnPlane {
-            out.renewed.push((index, Sought { way, margin, room }));
+            out.renewed.push((index, Sought { at: Relation::of(pair.bodies, self.bodies), margin, room }));
         }
     }
 
