@@ -3,7 +3,7 @@
 use super::broad;
 use super::manifold::entry;
 use super::pieces::{Bounds, NONE, Pieces};
-use crate::bodies::{Bodies, Surface};
+use crate::bodies::{Bodies, Surface, Twist};
 use crate::math::Vector64;
 
 /// Two pieces, or a piece and a half-plane, that may touch.
@@ -107,7 +107,9 @@ pub(super) struct Pairs {
     /// Twice the distance each body can go in the substep on its own [m].
     own_reach: Vec<f64>,
     /// The same for it or any body near it, which may hit it.
-    pub reach: Vec<f64>,
+    reach: Vec<f64>,
+    /// Twice the way that a body and one near it can go against each other in the substep, the most of all near [m].
+    closing: Vec<f64>,
 }
 
 impl Pairs {
@@ -134,6 +136,31 @@ impl Pairs {
             self.pair_up(pieces, bodies);
         } else if (0..bodies.len()).any(|id| self.was_active[id] != bodies.is_active(id)) {
             self.list_active(bodies);
+        }
+        self.estimate_closing(bodies, dt, gravity);
+    }
+
+    /// How far apart a pair may be and still touch in the substep [m].
+    pub fn margin(&self, pair: &Pair) -> f64 {
+        let (a, b) = pair.bodies;
+        entry(&self.closing, a).max(entry(&self.closing, b)) + pair.near
+    }
+
+    /// Bodies that move together hardly meet. One that is hit by a third moves on no faster than that came.
+    fn estimate_closing(&mut self, bodies: &Bodies, dt: f64, gravity: f64) {
+        self.closing.clear();
+        self.closing.resize(bodies.len(), 0.0);
+        for &index in &self.active {
+            let (a, b) = self.all[index as usize].bodies;
+            let (of_a, of_b) = (entry(&bodies.velocities, a), entry(&bodies.velocities, b));
+            let spin = |of: &Twist, body: u32| of.angular.abs() * entry(&bodies.reaches, body);
+            let speed = (of_a.linear - of_b.linear).length() + spin(&of_a, a) + spin(&of_b, b);
+            let way = 2.0 * (speed + 2.0 * gravity * dt) * dt;
+            for body in [a, b] {
+                if let Some(most) = self.closing.get_mut(body as usize) {
+                    *most = most.max(way);
+                }
+            }
         }
     }
 

@@ -1,7 +1,7 @@
 //! What touches in one pair: measured again where it is known, else sought by the narrow phase.
 
 use super::find::{Found, Moment};
-use super::manifold::{Contact, Site, entry};
+use super::manifold::{Contact, Site};
 use super::narrow::{self, Finding, Place, Touch};
 use super::pairs::{Kind, Pair, Pairs, Relation, Sought, Span};
 use super::pieces::Pieces;
@@ -24,7 +24,7 @@ impl Search<'_> {
     /// Appends the contacts of a pair.
     pub fn pair(&self, index: u32, out: &mut Found) {
         let pair = &self.pairs.all[index as usize];
-        let margin = entry(&self.pairs.reach, pair.bodies.0) + entry(&self.pairs.reach, pair.bodies.1) + pair.near;
+        let margin = self.pairs.margin(pair);
         let start = out.contacts.len();
         match pair.kind {
             Kind::Discs => {
