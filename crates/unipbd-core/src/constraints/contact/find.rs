@@ -103,8 +103,8 @@ impl Finder {
         for (pair, sought) in self.found.renewed.drain(..) {
             self.pairs.sought[pair as usize] = sought;
         }
-        for &index in &self.pairs.active {
-            self.pairs.spans[index as usize] = Span::default();
+        for active in &self.pairs.active {
+            self.pairs.spans[active.index as usize] = Span::default();
         }
         for (site, index) in self.found.sites.iter().zip(0u32..) {
             let span = &mut self.pairs.spans[site.pair as usize];
@@ -143,11 +143,11 @@ impl Finder {
         let search = Search { pieces, pairs, bodies, moment, last, frozen };
         let active = &pairs.active;
         if active.len() < PARALLEL_FROM || rayon::current_num_threads() == 1 {
-            active.iter().for_each(|&index| search.pair(index, &mut coming));
+            active.iter().for_each(|pair| search.pair(pair.index, &mut coming));
         } else {
             tasks.resize_with(tasks.len().max(active.len().div_ceil(CHUNK)), Found::default);
             tasks.par_iter_mut().zip(active.par_chunks(CHUNK)).for_each(|(task, pairs)| {
-                pairs.iter().for_each(|&index| search.pair(index, task));
+                pairs.iter().for_each(|pair| search.pair(pair.index, task));
             });
             tasks.iter_mut().for_each(|task| coming.append(task));
         }

@@ -6,6 +6,9 @@ use super::pieces::{Bounds, NONE, Pieces};
 use crate::bodies::{Bodies, Surface, Twist};
 use crate::math::Vector64;
 
+/// Room in the boxes that pairs are sought with, over the reach of a substep.
+const ROOM: f64 = 4.0;
+
 /// Two pieces, or a piece and a half-plane, that may touch.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Pair {
@@ -101,15 +104,20 @@ pub(super) struct Pairs {
     pub spans: Vec<Span>,
     pub sought: Vec<Sought>,
     /// Pairs of which a body can move.
-    pub active: Vec<u32>,
+    pub active: Vec<Active>,
     /// Which bodies could move when `active` was listed.
     was_active: Vec<bool>,
-    /// Twice the distance each body can go in the substep on its own [m].
-    own_reach: Vec<f64>,
-    /// The same for it or any body near it, which may hit it.
-    reach: Vec<f64>,
+    /// How fast each body goes, and how fast its fastest point turns about its centre [m/s].
+    speeds: Vec<Twist>,
     /// Twice the way that a body and one near it can go against each other in the substep, the most of all near [m].
     closing: Vec<f64>,
+}
+
+/// A pair of which a body can move.
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
+pub(super) struct Active {
+    pub index: u32,
+    bodies: (u32, u32),
 }
 
 impl Pairs {
@@ -131,13 +139,16 @@ impl Pairs {
 
     /// Makes the list hold all pairs that can touch in a substep of length `dt`.
     pub fn update(&mut self, pieces: &Pieces, bodies: &Bodies, dt: f64, gravity: f64) {
-        self.estimate_reach(bodies, dt, gravity);
-        if !self.hold(pieces, bodies) {
-            self.pair_up(pieces, bodies);
+        self.measure_speeds(bodies, gravity * dt);
+        spread(&self.speeds, dt, self.active.iter().map(|active| active.bodies), &mut self.closing);
+        if !self.hold(pieces, bodies, dt) {
+            self.pair_up(pieces, bodies, dt);
         } else if (0..bodies.len()).any(|id| self.was_active[id] != bodies.is_active(id)) {
             self.list_active(bodies);
+        } else {
+            return;
         }
-        self.estimate_closing(bodies, dt, gravity);
+        spread(&self.speeds, dt, self.active.iter().map(|active| active.bodies), &mut self.closing);
     }
 
     /// How far apart a pair may be and still touch in the substep [m].
@@ -146,58 +157,43 @@ impl Pairs {
         entry(&self.closing, a).max(entry(&self.closing, b)) + pair.near
     }
 
-    /// Bodies that move together hardly meet. One that is hit by a third moves on no faster than that came.
-    fn estimate_closing(&mut self, bodies: &Bodies, dt: f64, gravity: f64) {
-        self.closing.clear();
-        self.closing.resize(bodies.len(), 0.0);
-        for &index in &self.active {
-            let (a, b) = self.all[index as usize].bodies;
-            let (of_a, of_b) = (entry(&bodies.velocities, a), entry(&bodies.velocities, b));
-            let spin = |of: &Twist, body: u32| of.angular.abs() * entry(&bodies.reaches, body);
-            let speed = (of_a.linear - of_b.linear).length() + spin(&of_a, a) + spin(&of_b, b);
-            let way = 2.0 * (speed + 2.0 * gravity * dt) * dt;
-            for body in [a, b] {
-                if let Some(most) = self.closing.get_mut(body as usize) {
-                    *most = most.max(way);
-                }
-            }
-        }
+    /// Gravity adds this much in the substep [m/s].
+    fn measure_speeds(&mut self, bodies: &Bodies, gain: f64) {
+        self.speeds.clear();
+        self.speeds.extend(bodies.velocities.iter().zip(&bodies.reaches).map(|(velocity, reach)| Twist {
+            linear: velocity.linear,
+            angular: velocity.angular.abs() * reach + gain,
+        }));
     }
 
-    /// A body near a faster one may be hit by it, and must see what is behind it as early.
-    fn estimate_reach(&mut self, bodies: &Bodies, dt: f64, gravity: f64) {
-        self.own_reach.clear();
-        self.own_reach.extend((0..bodies.len()).map(|id| {
-            let velocity = &bodies.velocities[id];
-            let speed = velocity.linear.length() + velocity.angular.abs() * bodies.reaches[id];
-            2.0 * (speed + gravity * dt) * dt
-        }));
-        let pairs = self.active.iter().map(|&index| self.all[index as usize].bodies);
-        spread_reach(&self.own_reach, pairs, &mut self.reach);
+    /// Twice the distance a body can go in the substep: on its own, or hit by one near it [m].
+    fn reach(&self, body: u32, dt: f64) -> f64 {
+        let own = entry(&self.speeds, body);
+        (2.0 * (own.linear.length() + own.angular) * dt).max(entry(&self.closing, body))
     }
 
     /// Whether no piece can leave the box that pairs were sought with.
-    fn hold(&self, pieces: &Pieces, bodies: &Bodies) -> bool {
+    fn hold(&self, pieces: &Pieces, bodies: &Bodies, dt: f64) -> bool {
         let moved = pieces.all.iter().zip(&pieces.bounds);
         self.fat.len() == pieces.all.len()
             && moved.zip(&self.fat).all(|((piece, bounds), fat)| {
                 piece.body == NONE
                     || !bodies.is_active(piece.body as usize)
-                    || fat.holds(&bounds.grown(self.reach[piece.body as usize] + 0.01 * piece.size))
+                    || fat.holds(&bounds.grown(self.reach(piece.body, dt) + 0.01 * piece.size))
             })
     }
 
     /// Seeks the pairs anew, with room for several substeps.
-    fn pair_up(&mut self, pieces: &Pieces, bodies: &Bodies) {
-        let mut found = self.seek(pieces, bodies);
+    fn pair_up(&mut self, pieces: &Pieces, bodies: &Bodies, dt: f64) {
+        let mut found = self.seek(pieces, bodies, dt);
         // Bodies near a fast one move as far as it does, once hit: give them the same room.
-        let mut spread = Vec::new();
+        let before: Vec<f64> = (0..bodies.len() as u32).map(|body| self.reach(body, dt)).collect();
         let of_bodies = found.iter().map(|&(a, b)| (pieces.body_of(a), pieces.body_of(b)));
-        spread_reach(&self.own_reach, of_bodies, &mut spread);
-        let lacking = (0..bodies.len()).any(|id| spread[id] > 2.0 * self.reach[id] + 0.01 * bodies.sizes[id]);
-        self.reach = spread;
-        if lacking {
-            found = self.seek(pieces, bodies);
+        spread(&self.speeds, dt, of_bodies, &mut self.closing);
+        let lacks =
+            |(body, &before): (u32, &f64)| self.reach(body, dt) > 2.0 * before + 0.01 * bodies.sizes[body as usize];
+        if (0..).zip(&before).any(lacks) {
+            found = self.seek(pieces, bodies, dt);
         }
         self.replace(pieces, &found);
         self.list_active(bodies);
@@ -218,12 +214,14 @@ impl Pairs {
         }
     }
 
-    fn seek(&mut self, pieces: &Pieces, bodies: &Bodies) -> Vec<(u32, u32)> {
-        self.fat.clear();
-        self.fat.extend(pieces.all.iter().zip(&pieces.bounds).map(|(piece, bounds)| {
-            let reach = entry(&self.reach, piece.body);
-            if piece.body == NONE { *bounds } else { bounds.grown(4.0 * reach + 0.05 * piece.size) }
+    fn seek(&mut self, pieces: &Pieces, bodies: &Bodies, dt: f64) -> Vec<(u32, u32)> {
+        let mut fat = std::mem::take(&mut self.fat);
+        fat.clear();
+        fat.extend(pieces.all.iter().zip(&pieces.bounds).map(|(piece, bounds)| match piece.body {
+            NONE => *bounds,
+            body => bounds.grown(ROOM * self.reach(body, dt) + 0.05 * piece.size),
         }));
+        self.fat = fat;
         broad::pairs(pieces, &self.fat, |a, b| may_touch(pieces, &self.excluded, bodies, a.min(b), a.max(b)))
     }
 
@@ -233,7 +231,7 @@ impl Pairs {
         let moving = |body: u32| body != NONE && self.was_active[body as usize];
         let listed = self.all.iter().zip(0..).filter(|(pair, _)| moving(pair.bodies.0) || moving(pair.bodies.1));
         self.active.clear();
-        self.active.extend(listed.map(|(_, index)| index));
+        self.active.extend(listed.map(|(pair, index)| Active { index, bodies: pair.bodies }));
     }
 }
 
@@ -276,14 +274,19 @@ impl Pair {
     }
 }
 
-/// Fills `reach` with each body's own, or that of a faster one it is paired with.
-fn spread_reach(own: &[f64], pairs: impl Iterator<Item = (u32, u32)>, reach: &mut Vec<f64>) {
-    reach.clear();
-    reach.extend_from_slice(own);
-    for (a, b) in pairs.filter(|&(a, b)| a != NONE && b != NONE) {
-        let (of_a, of_b) = (own[a as usize], own[b as usize]);
-        reach[a as usize] = reach[a as usize].max(of_b);
-        reach[b as usize] = reach[b as usize].max(of_a);
+/// Fills `closing`: bodies that move together hardly meet, and one that is hit by a third moves on no faster
+/// than that came.
+fn spread(speeds: &[Twist], dt: f64, pairs: impl Iterator<Item = (u32, u32)>, closing: &mut Vec<f64>) {
+    closing.clear();
+    closing.resize(speeds.len(), 0.0);
+    for (a, b) in pairs {
+        let (of_a, of_b) = (entry(speeds, a), entry(speeds, b));
+        let way = 2.0 * ((of_a.linear - of_b.linear).length() + of_a.angular + of_b.angular) * dt;
+        for body in [a, b] {
+            if let Some(most) = closing.get_mut(body as usize) {
+                *most = if way > *most { way } else { *most };
+            }
+        }
     }
 }
 
