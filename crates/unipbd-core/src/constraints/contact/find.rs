@@ -128,7 +128,7 @@ impl Finder {
             frozen.contacts.extend_from_slice(&known.contacts[span.range()]);
             frozen.sites.extend_from_slice(&known.sites[span.range()]);
             if !span.frozen {
-                frozen.contacts[start..].iter_mut().for_each(|contact| scale_impulses(contact, 1.0 / (dt * dt)));
+                frozen.contacts[start..].iter_mut().for_each(|contact| contact.scale_impulses(1.0 / (dt * dt)));
             }
             (span.first, span.frozen) = (start as u32, true);
         }
@@ -172,13 +172,5 @@ impl Found {
     pub fn truncate(&mut self, length: usize) {
         self.contacts.truncate(length);
         self.sites.truncate(length);
-    }
-}
-
-fn scale_impulses(contact: &mut Contact, factor: f64) {
-    contact.rolling_impulse *= factor;
-    for point in contact.points_mut() {
-        point.normal_impulse *= factor;
-        point.tangent_impulse *= factor;
     }
 }

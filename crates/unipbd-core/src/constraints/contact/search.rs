@@ -79,8 +79,7 @@ impl Search<'_> {
             contact.rolling_impulse = if rebounded { 0.0 } else { old.rolling_impulse * self.moment.kept };
             for (k, (point, old)) in contact.points_mut().iter_mut().zip(old.points()).enumerate() {
                 if known.rebound[k] == 0.0 {
-                    point.normal_impulse = old.normal_impulse * self.moment.kept;
-                    point.tangent_impulse = old.tangent_impulse * self.moment.kept;
+                    point.keep(old, self.moment.kept);
                 }
             }
             contact.note_velocities(&mut site, &self.bodies.velocities, self.moment.slow);
@@ -175,9 +174,7 @@ fn keep((contact, site): (&mut Contact, &Site), known: (&[Contact], &[Site]), ne
         };
         let same = old().find(named).or_else(|| old().find(close));
         if let Some((old, _, j)) = same.filter(|(_, site, j)| site.rebound[*j] == 0.0) {
-            let (point, old) = (&mut contact.points_mut()[k], &old.points()[j]);
-            point.normal_impulse = old.normal_impulse * scale;
-            point.tangent_impulse = old.tangent_impulse * scale;
+            contact.points_mut()[k].keep(&old.points()[j], scale);
         }
     }
     let rebounded = known.1.iter().any(|site| site.rebound != [0.0; 2]);
