@@ -103,8 +103,8 @@ impl Finder {
         for (pair, sought) in self.found.renewed.drain(..) {
             self.pairs.sought[pair as usize] = sought;
         }
-        for &index in &self.pairs.active {
-            self.pairs.spans[index as usize] = Span::default();
+        for active in &self.pairs.active {
+            self.pairs.spans[active.index as usize] = Span::default();
         }
         for (site, index) in self.found.sites.iter().zip(0u32..) {
             let span = &mut self.pairs.spans[site.pair as usize];
@@ -128,7 +128,7 @@ impl Finder {
             frozen.contacts.extend_from_slice(&known.contacts[span.range()]);
             frozen.sites.extend_from_slice(&known.sites[span.range()]);
             if !span.frozen {
-                frozen.contacts[start..].iter_mut().for_each(|contact| scale_impulses(contact, 1.0 / (dt * dt)));
+                frozen.contacts[start..].iter_mut().for_each(|contact| contact.scale_impulses(1.0 / (dt * dt)));
             }
             (span.first, span.frozen) = (start as u32, true);
         }
@@ -143,11 +143,11 @@ impl Finder {
         let search = Search { pieces, pairs, bodies, moment, last, frozen };
         let active = &pairs.active;
         if active.len() < PARALLEL_FROM || rayon::current_num_threads() == 1 {
-            active.iter().for_each(|&index| search.pair(index, &mut coming));
+            active.iter().for_each(|pair| search.pair(pair.index, &mut coming));
         } else {
             tasks.resize_with(tasks.len().max(active.len().div_ceil(CHUNK)), Found::default);
             tasks.par_iter_mut().zip(active.par_chunks(CHUNK)).for_each(|(task, pairs)| {
-                pairs.iter().for_each(|&index| search.pair(index, task));
+                pairs.iter().for_each(|pair| search.pair(pair.index, task));
             });
             tasks.iter_mut().for_each(|task| coming.append(task));
         }
@@ -172,13 +172,5 @@ impl Found {
     pub fn truncate(&mut self, length: usize) {
         self.contacts.truncate(length);
         self.sites.truncate(length);
-    }
-}
-
-fn scale_impulses(contact: &mut Contact, factor: f64) {
-    contact.rolling_impulse *= factor;
-    for point in contact.points_mut() {
-        point.normal_impulse *= factor;
-        point.tangent_impulse *= factor;
     }
 }

@@ -8,45 +8,10 @@
 use super::Depenetration;
 use super::complementarity::{self, Coupling};
 use super::jacobi::Push;
-use super::narrow::{Place, Touch};
+use super::narrow::Touch;
+pub(super) use super::site::{Point, Site};
 use crate::bodies::{Response, Surface, Twist};
 use crate::math::Vector64;
-
-/// One point of a contact, as the sweeps see it.
-#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
-pub(super) struct Point {
-    /// Distance of the surfaces at the start of the substep [m].
-    pub gap: f64,
-    /// Impulses of this substep, the start of the next.
-    pub normal_impulse: f64,
-    pub tangent_impulse: f64,
-    /// Moments about both centres of mass of unit impulses along normal and tangent [m].
-    normal_a: f64,
-    normal_b: f64,
-    tangent_a: f64,
-    tangent_b: f64,
-}
-
-/// What else belongs to a contact.
-#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
-pub(super) struct Site {
-    pub pair: u32,
-    /// The wall touched, or `NONE`.
-    pub wall: u32,
-    pub surface: Surface,
-    /// Which vertices and faces touch at each point.
-    pub places: [Place; 2],
-    /// Normal velocities at the start of the substep [m/s].
-    pub approach: [f64; 2],
-    /// Impulses of the rebound [kg m/s]; 0 where nothing rebounded.
-    pub rebound: [f64; 2],
-}
-
-impl Site {
-    pub fn new(pair: u32, wall: u32, surface: Surface) -> Site {
-        Site { pair, wall, surface, places: [Place::default(); 2], approach: [0.0; 2], rebound: [0.0; 2] }
-    }
-}
 
 /// What stays the same within a substep.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -133,6 +98,15 @@ impl Contact {
 
     pub fn points(&self) -> &[Point] {
         &self.points[..self.count as usize]
+    }
+
+    /// What its impulses become in substeps of another length.
+    pub fn scale_impulses(&mut self, factor: f64) {
+        self.rolling_impulse *= factor;
+        for point in self.points_mut() {
+            let old = *point;
+            point.keep(&old, factor);
+        }
     }
 
     pub fn points_mut(&mut self) -> &mut [Point] {

@@ -3,7 +3,11 @@
 use super::broad;
 use super::manifold::entry;
 use super::pieces::{Bounds, NONE, Pieces};
-use crate::bodies::{Bodies, Pose, Surface};
+use crate::bodies::{Bodies, Surface, Twist};
+use crate::math::Vector64;
+
+/// Room in the boxes that pairs are sought with, over the reach of a substep.
+const ROOM: f64 = 4.0;
 
 /// Two pieces, or a piece and a half-plane, that may touch.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
@@ -51,22 +55,46 @@ impl Span {
     }
 }
 
-/// When what touches in a pair was sought, in terms of motion.
+/// Where the bodies of a pair are to each other.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Relation {
+    /// From the centre of mass of the second body to that of the first [m].
+    offset: Vector64,
+    angles: [f64; 2],
+}
+
+/// Where the bodies were when what touches was sought, and with what.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Sought {
-    /// How far both had come by then [m].
-    pub way: f64,
+    pub at: Relation,
     /// Gap below which contacts were found [m].
     pub margin: f64,
-    /// How far they may move until it is no longer known what touches [m].
+    /// How far they may move against each other until it is no longer known what touches [m].
     pub room: f64,
 }
 
-impl Sought {
-    pub const NEVER: Sought = Sought { way: 0.0, margin: f64::NEG_INFINITY, room: f64::NEG_INFINITY };
+impl Relation {
+    pub fn of((a, b): (u32, u32), bodies: &Bodies) -> Relation {
+        let (a, b) = (entry(&bodies.poses, a), entry(&bodies.poses, b));
+        Relation { offset: a.position - b.position, angles: [a.angle, b.angle] }
+    }
+
+    /// How far any two points of the bodies have moved against each other since, at most [m].
+    pub fn way(&self, since: &Relation, (a, b): (u32, u32), bodies: &Bodies) -> f64 {
+        let turned = |k: usize, body: u32| (self.angles[k] - since.angles[k]).abs() * entry(&bodies.reaches, body);
+        (self.offset - since.offset).length() + turned(0, a) + turned(1, b)
+    }
 }
 
-/// All pairs that may touch, and how far bodies can and did move.
+impl Sought {
+    pub const NEVER: Sought = Sought {
+        at: Relation { offset: Vector64::ZERO, angles: [0.0; 2] },
+        margin: f64::NEG_INFINITY,
+        room: f64::NEG_INFINITY,
+    };
+}
+
+/// All pairs that may touch, and how far bodies can move.
 #[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Pairs {
     excluded: Vec<(u32, u32)>,
@@ -76,16 +104,20 @@ pub(super) struct Pairs {
     pub spans: Vec<Span>,
     pub sought: Vec<Sought>,
     /// Pairs of which a body can move.
-    pub active: Vec<u32>,
+    pub active: Vec<Active>,
     /// Which bodies could move when `active` was listed.
     was_active: Vec<bool>,
-    /// Twice the distance each body can go in the substep on its own [m].
-    own_reach: Vec<f64>,
-    /// The same for it or any body near it, which may hit it.
-    pub reach: Vec<f64>,
-    /// Length of the way that the fastest point of each body has come, at most [m].
-    pub ways: Vec<f64>,
-    last_poses: Vec<Pose>,
+    /// How fast each body goes, and how fast its fastest point turns about its centre [m/s].
+    speeds: Vec<Twist>,
+    /// Twice the way that a body and one near it can go against each other in the substep, the most of all near [m].
+    closing: Vec<f64>,
+}
+
+/// A pair of which a body can move.
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
+pub(super) struct Active {
+    pub index: u32,
+    bodies: (u32, u32),
 }
 
 impl Pairs {
@@ -107,60 +139,61 @@ impl Pairs {
 
     /// Makes the list hold all pairs that can touch in a substep of length `dt`.
     pub fn update(&mut self, pieces: &Pieces, bodies: &Bodies, dt: f64, gravity: f64) {
-        self.follow(bodies);
-        self.estimate_reach(bodies, dt, gravity);
-        if !self.hold(pieces, bodies) {
-            self.pair_up(pieces, bodies);
+        self.measure_speeds(bodies, gravity * dt);
+        spread(&self.speeds, dt, self.active.iter().map(|active| active.bodies), &mut self.closing);
+        if !self.hold(pieces, bodies, dt) {
+            self.pair_up(pieces, bodies, dt);
         } else if (0..bodies.len()).any(|id| self.was_active[id] != bodies.is_active(id)) {
             self.list_active(bodies);
+        } else {
+            return;
         }
+        spread(&self.speeds, dt, self.active.iter().map(|active| active.bodies), &mut self.closing);
     }
 
-    /// Adds to the ways what the bodies have moved since the last call.
-    fn follow(&mut self, bodies: &Bodies) {
-        self.ways.resize(bodies.len(), 0.0);
-        self.last_poses.extend_from_slice(&bodies.poses[self.last_poses.len()..]);
-        for (id, (last, pose)) in self.last_poses.iter_mut().zip(&bodies.poses).enumerate() {
-            let turned = (pose.angle - last.angle).abs() * bodies.reaches[id];
-            self.ways[id] += (pose.position - last.position).length() + turned;
-            *last = *pose;
-        }
+    /// How far apart a pair may be and still touch in the substep [m].
+    pub fn margin(&self, pair: &Pair) -> f64 {
+        let (a, b) = pair.bodies;
+        entry(&self.closing, a).max(entry(&self.closing, b)) + pair.near
     }
 
-    /// A body near a faster one may be hit by it, and must see what is behind it as early.
-    fn estimate_reach(&mut self, bodies: &Bodies, dt: f64, gravity: f64) {
-        self.own_reach.clear();
-        self.own_reach.extend((0..bodies.len()).map(|id| {
-            let velocity = &bodies.velocities[id];
-            let speed = velocity.linear.length() + velocity.angular.abs() * bodies.reaches[id];
-            2.0 * (speed + gravity * dt) * dt
+    /// Gravity adds this much in the substep [m/s].
+    fn measure_speeds(&mut self, bodies: &Bodies, gain: f64) {
+        self.speeds.clear();
+        self.speeds.extend(bodies.velocities.iter().zip(&bodies.reaches).map(|(velocity, reach)| Twist {
+            linear: velocity.linear,
+            angular: velocity.angular.abs() * reach + gain,
         }));
-        let pairs = self.active.iter().map(|&index| self.all[index as usize].bodies);
-        spread_reach(&self.own_reach, pairs, &mut self.reach);
+    }
+
+    /// Twice the distance a body can go in the substep: on its own, or hit by one near it [m].
+    fn reach(&self, body: u32, dt: f64) -> f64 {
+        let own = entry(&self.speeds, body);
+        (2.0 * (own.linear.length() + own.angular) * dt).max(entry(&self.closing, body))
     }
 
     /// Whether no piece can leave the box that pairs were sought with.
-    fn hold(&self, pieces: &Pieces, bodies: &Bodies) -> bool {
+    fn hold(&self, pieces: &Pieces, bodies: &Bodies, dt: f64) -> bool {
         let moved = pieces.all.iter().zip(&pieces.bounds);
         self.fat.len() == pieces.all.len()
             && moved.zip(&self.fat).all(|((piece, bounds), fat)| {
                 piece.body == NONE
                     || !bodies.is_active(piece.body as usize)
-                    || fat.holds(&bounds.grown(self.reach[piece.body as usize] + 0.01 * piece.size))
+                    || fat.holds(&bounds.grown(self.reach(piece.body, dt) + 0.01 * piece.size))
             })
     }
 
     /// Seeks the pairs anew, with room for several substeps.
-    fn pair_up(&mut self, pieces: &Pieces, bodies: &Bodies) {
-        let mut found = self.seek(pieces, bodies);
+    fn pair_up(&mut self, pieces: &Pieces, bodies: &Bodies, dt: f64) {
+        let mut found = self.seek(pieces, bodies, dt);
         // Bodies near a fast one move as far as it does, once hit: give them the same room.
-        let mut spread = Vec::new();
+        let before: Vec<f64> = (0..bodies.len() as u32).map(|body| self.reach(body, dt)).collect();
         let of_bodies = found.iter().map(|&(a, b)| (pieces.body_of(a), pieces.body_of(b)));
-        spread_reach(&self.own_reach, of_bodies, &mut spread);
-        let lacking = (0..bodies.len()).any(|id| spread[id] > 2.0 * self.reach[id] + 0.01 * bodies.sizes[id]);
-        self.reach = spread;
-        if lacking {
-            found = self.seek(pieces, bodies);
+        spread(&self.speeds, dt, of_bodies, &mut self.closing);
+        let lacks =
+            |(body, &before): (u32, &f64)| self.reach(body, dt) > 2.0 * before + 0.01 * bodies.sizes[body as usize];
+        if (0..).zip(&before).any(lacks) {
+            found = self.seek(pieces, bodies, dt);
         }
         self.replace(pieces, &found);
         self.list_active(bodies);
@@ -181,12 +214,14 @@ impl Pairs {
         }
     }
 
-    fn seek(&mut self, pieces: &Pieces, bodies: &Bodies) -> Vec<(u32, u32)> {
-        self.fat.clear();
-        self.fat.extend(pieces.all.iter().zip(&pieces.bounds).map(|(piece, bounds)| {
-            let reach = entry(&self.reach, piece.body);
-            if piece.body == NONE { *bounds } else { bounds.grown(4.0 * reach + 0.05 * piece.size) }
+    fn seek(&mut self, pieces: &Pieces, bodies: &Bodies, dt: f64) -> Vec<(u32, u32)> {
+        let mut fat = std::mem::take(&mut self.fat);
+        fat.clear();
+        fat.extend(pieces.all.iter().zip(&pieces.bounds).map(|(piece, bounds)| match piece.body {
+            NONE => *bounds,
+            body => bounds.grown(ROOM * self.reach(body, dt) + 0.05 * piece.size),
         }));
+        self.fat = fat;
         broad::pairs(pieces, &self.fat, |a, b| may_touch(pieces, &self.excluded, bodies, a.min(b), a.max(b)))
     }
 
@@ -196,7 +231,7 @@ impl Pairs {
         let moving = |body: u32| body != NONE && self.was_active[body as usize];
         let listed = self.all.iter().zip(0..).filter(|(pair, _)| moving(pair.bodies.0) || moving(pair.bodies.1));
         self.active.clear();
-        self.active.extend(listed.map(|(_, index)| index));
+        self.active.extend(listed.map(|(pair, index)| Active { index, bodies: pair.bodies }));
     }
 }
 
@@ -239,14 +274,19 @@ impl Pair {
     }
 }
 
-/// Fills `reach` with each body's own, or that of a faster one it is paired with.
-fn spread_reach(own: &[f64], pairs: impl Iterator<Item = (u32, u32)>, reach: &mut Vec<f64>) {
-    reach.clear();
-    reach.extend_from_slice(own);
-    for (a, b) in pairs.filter(|&(a, b)| a != NONE && b != NONE) {
-        let (of_a, of_b) = (own[a as usize], own[b as usize]);
-        reach[a as usize] = reach[a as usize].max(of_b);
-        reach[b as usize] = reach[b as usize].max(of_a);
+/// Fills `closing`: bodies that move together hardly meet, and one that is hit by a third moves on no faster
+/// than that came.
+fn spread(speeds: &[Twist], dt: f64, pairs: impl Iterator<Item = (u32, u32)>, closing: &mut Vec<f64>) {
+    closing.clear();
+    closing.resize(speeds.len(), 0.0);
+    for (a, b) in pairs {
+        let (of_a, of_b) = (entry(speeds, a), entry(speeds, b));
+        let way = 2.0 * ((of_a.linear - of_b.linear).length() + of_a.angular + of_b.angular) * dt;
+        for body in [a, b] {
+            if let Some(most) = closing.get_mut(body as usize) {
+                *most = if way > *most { way } else { *most };
+            }
+        }
     }
 }
 

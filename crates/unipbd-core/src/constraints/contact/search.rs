@@ -1,9 +1,9 @@
 //! What touches in one pair: measured again where it is known, else sought by the narrow phase.
 
 use super::find::{Found, Moment};
-use super::manifold::{Contact, Site, entry};
+use super::manifold::{Contact, Site};
 use super::narrow::{self, Finding, Place, Touch};
-use super::pairs::{Kind, Pair, Pairs, Sought, Span};
+use super::pairs::{Kind, Pair, Pairs, Relation, Sought, Span};
 use super::pieces::Pieces;
 use crate::bodies::Bodies;
 use crate::math::Vector64;
@@ -24,7 +24,7 @@ impl Search<'_> {
     /// Appends the contacts of a pair.
     pub fn pair(&self, index: u32, out: &mut Found) {
         let pair = &self.pairs.all[index as usize];
-        let margin = entry(&self.pairs.reach, pair.bodies.0) + entry(&self.pairs.reach, pair.bodies.1) + pair.near;
+        let margin = self.pairs.margin(pair);
         let start = out.contacts.len();
         match pair.kind {
             Kind::Discs => {
@@ -35,7 +35,7 @@ impl Search<'_> {
             Kind::DiscOnPlane => self.seek(index, pair, margin, out),
             Kind::OnPlane | Kind::Pieces => {
                 let sought = &self.pairs.sought[index as usize];
-                let way = self.way(pair) - sought.way;
+                let way = Relation::of(pair.bodies, self.bodies).way(&sought.at, pair.bodies, self.bodies);
                 let known = way <= sought.room && way + margin <= sought.margin;
                 if known && self.measure(index, pair, out) {
                     return;
@@ -45,10 +45,6 @@ impl Search<'_> {
             }
         }
         self.hand_on(self.pairs.spans[index as usize], start, out);
-    }
-
-    fn way(&self, pair: &Pair) -> f64 {
-        entry(&self.pairs.ways, pair.bodies.0) + entry(&self.pairs.ways, pair.bodies.1)
     }
 
     /// Measures what touched in the last substep. Tells whether that is still one contact where it was.
@@ -83,8 +79,7 @@ impl Search<'_> {
             contact.rolling_impulse = if rebounded { 0.0 } else { old.rolling_impulse * self.moment.kept };
             for (k, (point, old)) in contact.points_mut().iter_mut().zip(old.points()).enumerate() {
                 if known.rebound[k] == 0.0 {
-                    point.normal_impulse = old.normal_impulse * self.moment.kept;
-                    point.tangent_impulse = old.tangent_impulse * self.moment.kept;
+                    point.keep(old, self.moment.kept);
                 }
             }
             contact.note_velocities(&mut site, &self.bodies.velocities, self.moment.slow);
@@ -98,7 +93,7 @@ impl Search<'_> {
     fn seek(&self, index: u32, pair: &Pair, margin: f64, out: &mut Found) {
         let mut touches = std::mem::take(&mut out.touches);
         touches.clear();
-        let (way, mut margin) = (self.way(pair), margin);
+        let mut margin = margin;
         let room = match self.pieces.half_plane(pair.pieces.1) {
             Some(plane) => {
                 narrow::against_half_plane(&self.pieces.view(pair.pieces.0), plane, margin, &mut touches);
@@ -127,7 +122,7 @@ impl Search<'_> {
         }
         out.touches = touches;
         if pair.kind != Kind::DiscOnPlane {
-            out.renewed.push((index, Sought { way, margin, room }));
+            out.renewed.push((index, Sought { at: Relation::of(pair.bodies, self.bodies), margin, room }));
         }
     }
 
@@ -179,9 +174,7 @@ fn keep((contact, site): (&mut Contact, &Site), known: (&[Contact], &[Site]), ne
         };
         let same = old().find(named).or_else(|| old().find(close));
         if let Some((old, _, j)) = same.filter(|(_, site, j)| site.rebound[*j] == 0.0) {
-            let (point, old) = (&mut contact.points_mut()[k], &old.points()[j]);
-            point.normal_impulse = old.normal_impulse * scale;
-            point.tangent_impulse = old.tangent_impulse * scale;
+            contact.points_mut()[k].keep(&old.points()[j], scale);
         }
     }
     let rebounded = known.1.iter().any(|site| site.rebound != [0.0; 2]);
