@@ -16,7 +16,7 @@ use super::{ConstraintGroup, Corrections, DensityColumns, Needs, Substep};
 use crate::bytes::held;
 use crate::kernel::Kernel;
 use crate::math::{Real, Vector};
-use crate::simd::Records;
+use crate::simd::{Records, Staggered};
 use crate::walls::Coverage;
 use places::Places;
 
@@ -40,20 +40,20 @@ pub struct Density {
 /// Kernel sums over the neighbours of each row, the row itself left out.
 #[derive(Clone, Debug, Default)]
 struct Sums {
-    value: Vec<Real>,
-    gradient: Vec<Vector>,
-    response: Vec<Real>,
+    value: Staggered<Real>,
+    gradient: Staggered<Vector>,
+    response: Staggered<Real>,
 }
 
 impl Sums {
     fn memory_bytes(&self) -> usize {
-        held(&self.value) + held(&self.gradient) + held(&self.response)
+        self.value.memory_bytes() + self.gradient.memory_bytes() + self.response.memory_bytes()
     }
 
     fn resize(&mut self, rows: usize) {
-        self.value.resize(rows, 0.0);
-        self.gradient.resize(rows, Vector::ZERO);
-        self.response.resize(rows, 0.0);
+        self.value.resize(rows);
+        self.gradient.resize(rows);
+        self.response.resize(rows);
     }
 }
 
