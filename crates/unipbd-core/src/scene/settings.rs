@@ -46,8 +46,9 @@ pub struct SolverSettings {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mass_density: Option<MassDensityDescription>,
     /// Substeps without gravity before time 0 that bring the start to its rest density: at most this many, fewer
-    /// where nothing moves any more. About three times the layers of the deepest liquid bring all of it there.
-    pub settle_substeps: u32,
+    /// where nothing moves any more. Left out, 100, and up to three times the layers of what is deep and narrow.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub settle_substeps: Option<u32>,
     /// Steps of the coarse projection before that of the particles: a grid of cells two spacings wide carries the
     /// smooth part of the pressure; 0 is off.
     pub coarse_projection: u32,
@@ -72,7 +73,7 @@ impl Default for SolverSettings {
             constraint_mixing: 0.0,
             artificial_pressure: 0.0,
             mass_density: None,
-            settle_substeps: 100,
+            settle_substeps: None,
             coarse_projection: 0,
             sleep: false,
         }
@@ -170,7 +171,7 @@ read_over_preset! {
     constraint_mixing: f64,
     artificial_pressure: f64,
     mass_density: Option<MassDensityDescription>,
-    settle_substeps: u32,
+    settle_substeps: Option<u32>,
     coarse_projection: u32,
     sleep: bool,
 }
