@@ -98,13 +98,16 @@ fn text(svg: &mut String, at: (f64, f64), anchor: &str, text: &str) {
     let _ = writeln!(svg, "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"{anchor}\">{text}</text>", at.0, at.1);
 }
 
-/// Marks the points that no other point beats in both cost and error, and those that none would if both were less by
-/// this part: the scatter of the measurement.
+/// Marks the points that no other point beats: by more than this part, the scatter of the measurement, in cost or in
+/// error, while it is no worse in the other.
 pub fn mark_front(curves: &mut [Curve], scatter: f64) {
     let all: Vec<(f64, f64)> = curves.iter().flat_map(|curve| &curve.points).map(|point| (point.x, point.y)).collect();
-    let beaten = |(px, py): (f64, f64)| all.iter().any(|&(x, y)| x <= px && y <= py && (x < px || y < py));
+    let beaten = |p: &Point| {
+        let (cheap, exact) = (p.x * (1.0 - scatter), p.y * (1.0 - scatter));
+        all.iter().any(|&(x, y)| x <= p.x && y <= p.y && (x < cheap || y < exact))
+    };
     for point in curves.iter_mut().flat_map(|curve| &mut curve.points) {
-        point.best = point.y.is_finite() && !beaten((point.x * (1.0 - scatter), point.y * (1.0 - scatter)));
+        point.best = point.y.is_finite() && !beaten(point);
     }
 }
 

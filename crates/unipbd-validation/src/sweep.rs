@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use unipbd_core::scene::{GradientPoint, KernelKind, SolverSettings, Substeps};
+use unipbd_core::scene::{GradientPoint, KernelKind, Liquid, Scene, SolverSettings, Substeps};
 
 use crate::case::{Case, Outcome};
 use crate::cases::{self, DENSITY_ERROR, LEVEL};
@@ -49,12 +49,13 @@ pub const NORMS: &[Norm] = &[
     },
 ];
 
-/// How often each point is timed: the least counts. Rounds go over all curves, so that what else the machine does hits
-/// all alike.
-const ROUNDS: u32 = 3;
+/// Parts by which the relaxation differs in the rounds. Rounds go over all curves, so that what else the machine does
+/// hits all alike; the least time of a point counts. Its errors are averaged: how a wave decays and where a box comes to
+/// rest hang on the arrangement by chance, and that is another one in each round.
+const ROUNDS: [f64; 3] = [-0.005, 0.0, 0.005];
 
-/// Points that would be on the front if they were this much cheaper and more exact count as on it: times scatter by it,
-/// and errors that hang on the arrangement do too.
+/// A point is off the front only where another one is cheaper or more exact by this part, and no worse in the other:
+/// times scatter by it, and errors that hang on the arrangement do too.
 pub const SCATTER: f64 = 0.1;
 
 /// A way of solving: one curve over the numbers of substeps or iterations.
@@ -79,13 +80,29 @@ enum Scan {
 /// All curves.
 pub const VARIANTS: &[Variant] = &[
     Variant { name: "default, n by target", change: |_| (), scan: Scan::Targets },
-    Variant { name: "Wendland, h = 3 dx", change: |s| s.kernel_radius = 3.0, scan: Scan::Substeps(1) },
-    Variant { name: "Wendland, h = 2 dx", change: |s| s.kernel_radius = 2.0, scan: Scan::Substeps(1) },
-    Variant { name: "Wendland, h = 2.5 dx", change: |s| s.kernel_radius = 2.5, scan: Scan::Substeps(1) },
-    Variant { name: "Wendland, h = 4 dx", change: |s| s.kernel_radius = 4.0, scan: Scan::Substeps(1) },
     Variant {
         name: "h = 3 dx, taken half way",
         change: |s| at(s, 3.0, GradientPoint::Middle),
+        scan: Scan::Substeps(1),
+    },
+    Variant {
+        name: "h = 2 dx, taken half way",
+        change: |s| at(s, 2.0, GradientPoint::Middle),
+        scan: Scan::Substeps(1),
+    },
+    Variant {
+        name: "h = 2.5 dx, taken half way",
+        change: |s| at(s, 2.5, GradientPoint::Middle),
+        scan: Scan::Substeps(1),
+    },
+    Variant {
+        name: "h = 4 dx, taken half way",
+        change: |s| at(s, 4.0, GradientPoint::Middle),
+        scan: Scan::Substeps(1),
+    },
+    Variant {
+        name: "h = 3 dx, gradients at the prediction",
+        change: |s| at(s, 3.0, GradientPoint::Predicted),
         scan: Scan::Substeps(1),
     },
     Variant {
@@ -94,8 +111,8 @@ pub const VARIANTS: &[Variant] = &[
         scan: Scan::Substeps(1),
     },
     Variant {
-        name: "h = 2 dx, taken half way",
-        change: |s| at(s, 2.0, GradientPoint::Middle),
+        name: "h = 2 dx, gradients at the prediction",
+        change: |s| at(s, 2.0, GradientPoint::Predicted),
         scan: Scan::Substeps(1),
     },
     Variant {
@@ -115,6 +132,7 @@ pub const VARIANTS: &[Variant] = &[
         change: |s| {
             (s.kernel, s.kernel_radius) = (KernelKind::Poly6Spiky, 3.0);
             s.relaxation = Some(1.0);
+            s.gradients = Some(GradientPoint::Predicted);
             (s.constraint_mixing, s.artificial_pressure) = (1.0, 0.1);
         },
         scan: Scan::Iterations,
@@ -144,25 +162,38 @@ impl Variant {
     }
 }
 
-/// A point of a curve before it is drawn: least time and figures.
+/// A point of a curve before it is drawn.
 struct Timed {
     variant: &'static Variant,
     settings: SolverSettings,
-    /// What it gave, with the least wall time of all rounds; none once it has failed.
-    outcome: Option<Outcome>,
+    /// What each round gave; nothing once one has failed.
+    outcomes: Vec<Outcome>,
 }
 
 impl Timed {
-    /// Runs it once more.
-    fn run(&mut self, case: &'static Case, resolution: u32, round: u32) {
-        let before = self.outcome.take();
-        if round > 0 && before.is_none() {
-            return;
-        }
-        self.outcome = case.run(resolution, &self.settings).ok().map(|mut outcome| {
-            outcome.cost.wall = before.map_or(outcome.cost.wall, |before| before.cost.wall.min(outcome.cost.wall));
-            outcome
-        });
+    /// Runs it once more, with a relaxation that differs by this part.
+    fn run(&mut self, case: &'static Case, resolution: u32, part: f64) {
+        let mut settings = self.settings.clone();
+        // What all four cases are made of.
+        let water = Scene { solver: settings.clone(), liquid: vec![Liquid::new("water", 1000.0)], ..Scene::default() };
+        let gradients = water.gradients();
+        settings.relaxation = Some(settings.relaxation_of_liquids(gradients) * (1.0 + part));
+        self.outcomes.extend(case.run(resolution, &settings).ok());
+    }
+
+    fn is_done(&self) -> bool {
+        self.outcomes.len() == ROUNDS.len()
+    }
+
+    /// Least processor time [s].
+    fn time(&self) -> f64 {
+        self.outcomes.iter().map(|outcome| outcome.cost.processor.as_secs_f64()).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Size of the mean of a figure.
+    fn error(&self, figure: &str) -> f64 {
+        let values = self.outcomes.iter().map(|outcome| outcome.figure(figure).unwrap_or(f64::NAN));
+        (values.sum::<f64>() / self.outcomes.len() as f64).abs()
     }
 }
 
@@ -176,32 +207,31 @@ pub struct Swept {
 /// Runs all variants of a case.
 pub fn sweep(case: &'static Case, resolution: u32, mut look: impl FnMut(&str)) -> Swept {
     let timed = |variant: &'static Variant| {
-        variant.settings().into_iter().map(move |settings| Timed { variant, settings, outcome: None })
+        variant.settings().into_iter().map(move |settings| Timed { variant, settings, outcomes: Vec::new() })
     };
     let mut points: Vec<Timed> = VARIANTS.iter().flat_map(timed).collect();
-    for round in 0..ROUNDS {
-        points.iter_mut().for_each(|point| point.run(case, resolution, round));
-        look(&format!("{}: round {} of {ROUNDS}", case.name, round + 1));
+    for part in ROUNDS {
+        points.iter_mut().for_each(|point| point.run(case, resolution, part));
+        look(&format!("{}: relaxation {:+} % done", case.name, 100.0 * part));
     }
     Swept { case, resolution, points }
 }
 
 impl Swept {
-    /// The curves of one figure over wall time [s], with the front marked, and their rows of the table.
+    /// The curves of one figure over processor time [s], with the front marked, and their rows of the table.
     pub fn curves(&self, norm: &Norm) -> (Vec<Curve>, String) {
-        let done = || self.points.iter().filter_map(|point| Some((point, point.outcome.as_ref()?)));
-        let error = |outcome: &Outcome| outcome.figure(norm.figure).map_or(f64::NAN, f64::abs);
+        let done = || self.points.iter().filter(|point| point.is_done());
         let curve = |variant: &Variant| Curve {
             name: variant.name.to_owned(),
             points: done()
-                .filter(|(point, _)| point.variant.name == variant.name)
-                .map(|(_, outcome)| Point { x: outcome.cost.wall.as_secs_f64(), y: error(outcome), best: false })
+                .filter(|point| point.variant.name == variant.name)
+                .map(|point| Point { x: point.time(), y: point.error(norm.figure), best: false })
                 .collect(),
         };
         let mut curves: Vec<Curve> = VARIANTS.iter().map(curve).collect();
         mark_front(&mut curves, SCATTER);
         let mut csv = String::new();
-        for ((timed, outcome), point) in done().zip(curves.iter().flat_map(|curve| &curve.points)) {
+        for (timed, point) in done().zip(curves.iter().flat_map(|curve| &curve.points)) {
             let substeps = match timed.settings.substeps {
                 Substeps::Fixed(substeps) => substeps.to_string(),
                 Substeps::Auto => format!("auto {}", timed.settings.target_compression),
@@ -216,7 +246,7 @@ impl Swept {
                 timed.settings.iterations,
                 point.y,
                 point.x,
-                outcome.cost.pair_visits,
+                timed.outcomes[0].cost.pair_visits,
                 point.best
             );
         }
@@ -225,11 +255,11 @@ impl Swept {
 }
 
 /// The first line of the table.
-pub const HEADER: &str = "case,resolution,figure,curve,substeps,iterations,error,wall_s,pair_visits,on_front\n";
+pub const HEADER: &str = "case,resolution,figure,curve,substeps,iterations,error,processor_s,pair_visits,on_front\n";
 
 /// The picture of a sweep.
 pub fn picture(norm: &Norm, curves: &[Curve]) -> String {
-    log_log(&norm.picture.replace('_', " "), "wall time [s], one thread, least of 3 runs", norm.axis, curves)
+    log_log(&norm.picture.replace('_', " "), "processor time [s], one thread, least of 3 runs", norm.axis, curves)
 }
 
 /// The cases of the sweep at these sizes.
