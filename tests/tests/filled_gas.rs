@@ -231,7 +231,7 @@ fn lock_exchange_fronts_run_at_half_of_the_long_wave_speed() {
     // Starts that differ by how long they settled scatter by 0.02: single ones tell little.
     let starts = [60, 80, 100, 120].map(|settle_substeps| {
         let mut scene = lock();
-        scene.solver.settle_substeps = settle_substeps;
+        scene.solver.settle_substeps = Some(settle_substeps);
         speeds_of_fronts(&scene)
     });
     let mean = |front: usize| mean_of(starts.iter().map(|speeds| speeds[front]));

@@ -124,7 +124,7 @@ fn weight(distance: f64, radius: f64) -> f64 {
 #[test]
 fn smoke_has_the_mean_velocity_of_the_carrier_around_it() {
     let mut scene = shipped("open_gas.toml").scene;
-    scene.solver.settle_substeps = 0;
+    scene.solver.settle_substeps = Some(0);
     let radius = scene.solver.kernel_radius * scene.spacing;
     let mut solver = build(&scene, 2);
     run(&mut solver, 50, |_| ());

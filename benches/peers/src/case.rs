@@ -1,6 +1,7 @@
 //! The two cases, the same for every solver, and how their compression is measured.
 
 use cpu_time::ProcessTime;
+use unipbd_validation::compression::Estimator;
 
 /// A block of liquid on a lattice of spacing `dx` in a tank from the origin.
 #[derive(Clone, Copy)]
@@ -15,7 +16,7 @@ pub struct Case {
 
 /// Seconds between two looks at the positions.
 pub const LOOK: f64 = 0.1;
-/// Neighbours counted by the estimate, in spacings.
+/// Radius of the estimate's kernel, in spacings.
 const REACH: f64 = 2.5;
 
 impl Case {
@@ -38,57 +39,10 @@ impl Case {
         (0..columns * rows).map(at).collect()
     }
 
-    /// Mean compression, max(rho/rho0 - 1, 0), over the interior: particles farther than the kernel's reach from walls and
-    /// from the surface, which is the highest particle of their column. The density is that of a cubic
-    /// spline (Monaghan 1992), 1 on the lattice.
+    /// Mean compression, max(rho/rho0 - 1, 0), over the interior.
     pub fn compression(&self, positions: &[[f64; 2]]) -> f64 {
-        let reach = REACH * self.dx;
-        let scaled = |x: f64| (x / reach).floor().max(0.0) as usize;
-        let (columns, rows) = (scaled(self.tank[0]) + 2, scaled(self.tank[1]) + 2);
-        let cell = |x: &[f64; 2]| (scaled(x[0]).min(columns - 1), scaled(x[1]).min(rows - 1));
-        let mut cells = vec![Vec::new(); columns * rows];
-        let mut tops = vec![0.0_f64; columns];
-        for (k, x) in positions.iter().enumerate() {
-            let (column, row) = cell(x);
-            cells[row * columns + column].push(k);
-            tops[column] = tops[column].max(x[1]);
-        }
-        let rest: f64 = (-3..=3)
-            .flat_map(|i| (-3..=3).map(move |j| (f64::from(i), f64::from(j))))
-            .map(|(i, j)| spline(i.hypot(j) / REACH))
-            .sum();
-        let (mut sum, mut count) = (0.0, 0);
-        for x in positions {
-            let (column, row) = cell(x);
-            let lowest_top =
-                (column.max(1) - 1..=(column + 1).min(columns - 2)).map(|k| tops[k]).fold(f64::INFINITY, f64::min);
-            let inside = x[0] > reach && x[0] < self.tank[0] - reach && x[1] > reach;
-            if !inside || x[1] > lowest_top - 1.5 * reach {
-                continue;
-            }
-            let mut density = 0.0;
-            for row in row.max(1) - 1..=(row + 1).min(rows - 1) {
-                for column in column.max(1) - 1..=(column + 1).min(columns - 1) {
-                    for &j in &cells[row * columns + column] {
-                        density += spline((x[0] - positions[j][0]).hypot(x[1] - positions[j][1]) / reach);
-                    }
-                }
-            }
-            sum += (density / rest - 1.0).max(0.0);
-            count += 1;
-        }
-        if count > 0 { sum / f64::from(count) } else { 0.0 }
-    }
-}
-
-/// The cubic spline over q = r/h, without its constant.
-fn spline(q: f64) -> f64 {
-    if q < 0.5 {
-        6.0 * (q * q * q - q * q) + 1.0
-    } else if q < 1.0 {
-        2.0 * (1.0 - q).powi(3)
-    } else {
-        0.0
+        let estimator = Estimator { spacing: self.dx, radius: REACH, tank: self.tank };
+        estimator.errors(positions).mean_compression()
     }
 }
 

@@ -55,7 +55,7 @@ impl Solver {
         let scene = scene::from_dict(py, description)?;
         let mut build = scene.clone();
         if settled {
-            build.solver.settle_substeps = 0;
+            build.solver.settle_substeps = Some(0);
         }
         let options = BuildOptions { threads, seed };
         let running = py.detach(|| Simulation::new(&build, options));

@@ -113,6 +113,11 @@ impl Outcome {
         self.figures.first().map_or(f64::NAN, |figure| figure.value.abs())
     }
 
+    /// The value of this figure.
+    pub fn figure(&self, what: &str) -> Option<f64> {
+        self.figures.iter().find(|figure| figure.what == what).map(|figure| figure.value)
+    }
+
     /// Figures outside their bands.
     pub fn missed(&self) -> impl Iterator<Item = &Figure> {
         self.figures.iter().filter(|figure| !figure.holds())

@@ -22,13 +22,15 @@ pub struct Curve {
     pub points: Vec<Point>,
 }
 
-const SIZE: (f64, f64) = (760.0, 480.0);
+const SIZE: (f64, f64) = (800.0, 480.0);
 const LEFT: f64 = 70.0;
-const RIGHT: f64 = 230.0;
+const RIGHT: f64 = 260.0;
 const TOP: f64 = 40.0;
 const BOTTOM: f64 = 50.0;
-const COLORS: [&str; 10] =
-    ["#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#e377c2", "#7f7f7f", "#bcbd22", "#17becf"];
+const COLORS: [&str; 13] = [
+    "#000000", "#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#e377c2", "#ffbb00", "#bcbd22",
+    "#17becf", "#7f7f7f", "#c5b0d5",
+];
 
 /// Draws curves on two logarithmic axes; points on the front of all are filled.
 pub fn log_log(title: &str, x_label: &str, y_label: &str, curves: &[Curve]) -> String {
@@ -96,11 +98,14 @@ fn text(svg: &mut String, at: (f64, f64), anchor: &str, text: &str) {
     let _ = writeln!(svg, "<text x=\"{:.1}\" y=\"{:.1}\" text-anchor=\"{anchor}\">{text}</text>", at.0, at.1);
 }
 
-/// Marks the points that no other point beats in both cost and error.
-pub fn mark_front(curves: &mut [Curve]) {
+/// Marks the points that no other point beats: by more than this part, the scatter of the measurement, in cost or in
+/// error, while it is no worse in the other.
+pub fn mark_front(curves: &mut [Curve], scatter: f64) {
     let all: Vec<(f64, f64)> = curves.iter().flat_map(|curve| &curve.points).map(|point| (point.x, point.y)).collect();
-    let beaten =
-        |point: &Point| all.iter().any(|(x, y)| *x <= point.x && *y <= point.y && (*x < point.x || *y < point.y));
+    let beaten = |p: &Point| {
+        let (cheap, exact) = (p.x * (1.0 - scatter), p.y * (1.0 - scatter));
+        all.iter().any(|&(x, y)| x <= p.x && y <= p.y && (x < cheap || y < exact))
+    };
     for point in curves.iter_mut().flat_map(|curve| &mut curve.points) {
         point.best = point.y.is_finite() && !beaten(point);
     }
@@ -117,11 +122,20 @@ mod tests {
             Curve { name: "a".into(), points: vec![point(1.0, 4.0), point(2.0, 2.0)] },
             Curve { name: "b".into(), points: vec![point(2.0, 3.0), point(4.0, 1.0), point(5.0, f64::NAN)] },
         ];
-        mark_front(&mut curves);
+        mark_front(&mut curves, 0.0);
         let best = |curve: &Curve| curve.points.iter().map(|p| p.best).collect::<Vec<_>>();
         assert_eq!(best(&curves[0]), [true, true]);
         assert_eq!(best(&curves[1]), [false, true, false]);
         assert!(log_log("t", "x", "y", &curves).contains("<polyline"));
+    }
+
+    #[test]
+    fn points_within_the_scatter_of_the_front_count_as_on_it() {
+        let point = |x, y| Point { x, y, best: false };
+        let mut curves =
+            [Curve { name: "a".into(), points: vec![point(1.0, 1.0), point(1.05, 1.05), point(1.2, 1.05)] }];
+        mark_front(&mut curves, 0.1);
+        assert_eq!(curves[0].points.iter().map(|p| p.best).collect::<Vec<_>>(), [true, true, false]);
     }
 
     #[test]

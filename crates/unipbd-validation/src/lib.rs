@@ -4,6 +4,7 @@
 pub mod case;
 pub mod cases;
 pub mod chart;
+pub mod compression;
 pub mod exact;
 mod notes;
 pub mod precision;

@@ -12,10 +12,10 @@ use unipbd_validation::stress::{
 use unipbd_validation::{cases, precision, report, sweep};
 
 const HELP: &str =
-    "usage: unipbd-validation [--quick | --full | --sweep [--full] | --stress [--full] | --map | --precision | CASE [RESOLUTION] [SETTING=VALUE...]]
+    "usage: unipbd-validation [--quick | --full | --sweep [--full] [CASE...] | --stress [--full] | --map | --precision | CASE [RESOLUTION] [SETTING=VALUE...]]
   --quick   every case at its quick size (default)
   --full    every case at three resolutions and three targets; writes docs/accuracy.md
-  --sweep   run time against error for four cases; writes docs/accuracy/*.csv and *.svg
+  --sweep   run time against error for four cases, or those named; writes docs/accuracy/*.csv and *.svg
   --stress  scenes that ask too much, a pool at rest for 20,000 steps (a million with --full), and 100 random
             scenes (2000 with --full); one that breaks is shrunk and kept
   --map     what is stable: density ratio, depth and speed against substeps; its part of docs/accuracy.md and
@@ -42,7 +42,7 @@ fn main() -> ExitCode {
     } else if has("--precision") {
         run_precision()
     } else if has("--sweep") {
-        run_sweeps(has("--full"))
+        run_sweeps(has("--full"), &arguments)
     } else if has("--full") {
         run_full()
     } else if let Some(name) = arguments.first().filter(|name| *name != "--quick") {
@@ -136,9 +136,9 @@ fn set(solver: &mut SolverSettings, key: &str, value: &str) -> Result<(), Box<dy
 /// Writes the sheet after every case: a run that is cut off leaves what it has.
 fn run_full() -> Result<bool, Box<dyn std::error::Error>> {
     std::fs::create_dir_all("docs")?;
-    let charts: Vec<String> = sweep::CASES
+    let charts: Vec<String> = sweep::NORMS
         .iter()
-        .map(|(name, ..)| format!("accuracy/{name}.svg"))
+        .map(|norm| format!("accuracy/{}.svg", norm.picture))
         .filter(|path| Path::new("docs").join(path).exists())
         .collect();
     let mut entries = Vec::new();
@@ -194,12 +194,20 @@ fn write_section(heading: &str, body: &str) -> std::io::Result<()> {
     std::fs::write(SHEET, with_section(&document, heading, body))
 }
 
-fn run_sweeps(full: bool) -> Result<bool, Box<dyn std::error::Error>> {
+fn run_sweeps(full: bool, arguments: &[String]) -> Result<bool, Box<dyn std::error::Error>> {
     std::fs::create_dir_all("docs/accuracy")?;
+    let names: Vec<&String> = arguments.iter().filter(|argument| !argument.starts_with("--")).collect();
     for (case, resolution) in sweep::cases(full) {
-        let (curves, rows) = sweep::sweep(case, resolution, |line| println!("{line}"));
-        std::fs::write(format!("docs/accuracy/{}.csv", case.name), sweep::HEADER.to_owned() + &rows)?;
-        std::fs::write(format!("docs/accuracy/{}.svg", case.name), sweep::picture(case, &curves))?;
+        if !names.is_empty() && !names.iter().any(|name| *name == case.name) {
+            continue;
+        }
+        let swept = sweep::sweep(case, resolution, |line| println!("{line}"));
+        for norm in sweep::NORMS.iter().filter(|norm| norm.case == case.name) {
+            let (curves, rows) = swept.curves(norm);
+            print!("{rows}");
+            std::fs::write(format!("docs/accuracy/{}.csv", norm.picture), sweep::HEADER.to_owned() + &rows)?;
+            std::fs::write(format!("docs/accuracy/{}.svg", norm.picture), sweep::picture(norm, &curves))?;
+        }
     }
     Ok(true)
 }

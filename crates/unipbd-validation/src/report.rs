@@ -67,7 +67,11 @@ pub fn sheet(entries: &[Entry], charts: &[String]) -> String {
     }
     if !charts.is_empty() {
         text.push_str(
-            "\n## Run time against error\n\nFilled points are on the front: nothing is both cheaper and better.\n\n",
+            "\n## Run time against error\n\nFilled points are on the front: \
+             nothing is 10 % cheaper without more error, or 10 % more exact at no more cost, which is how much both scatter. Each point \
+             is run three times, in rounds over all curves, with relaxations half a percent apart: the least processor time counts, and \
+             the mean of the errors, as some hang on the arrangement by chance. The density error |C| is measured alike for all kernels, from positions alone: \
+             by a cubic spline whose radius is that of the widest kernel compared.\n\n",
         );
         charts.iter().for_each(|chart| {
             let _ = writeln!(text, "![{chart}]({chart})");

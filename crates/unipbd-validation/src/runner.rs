@@ -2,6 +2,7 @@
 
 use std::time::{Duration, Instant};
 
+use cpu_time::ProcessTime;
 use unipbd_core::math::{Vector64, wide};
 use unipbd_core::scene::Scene;
 use unipbd_core::{BuildOptions, Edit, MaterialIndex, Solver};
@@ -23,6 +24,8 @@ impl std::error::Error for Failure {}
 pub struct Cost {
     /// Wall-clock time of the steps, on one thread.
     pub wall: Duration,
+    /// Processor time of the steps: what else the machine does is not in it.
+    pub processor: Duration,
     /// Pairs of particles visited: two passes per iteration over pi (h/dx)^2 neighbours each.
     pub pair_visits: f64,
     /// Particles at the end.
@@ -36,6 +39,7 @@ impl Cost {
     pub fn and(self, other: Cost) -> Cost {
         Cost {
             wall: self.wall + other.wall,
+            processor: self.processor + other.processor,
             pair_visits: self.pair_visits + other.pair_visits,
             particles: self.particles.max(other.particles),
             substeps: self.substeps + other.substeps,
@@ -69,9 +73,10 @@ impl Runner {
     /// # Errors
     /// When the run diverges.
     pub fn frame(&mut self) -> Result<(), Failure> {
-        let start = Instant::now();
+        let (start, processor) = (Instant::now(), ProcessTime::now());
         let report = self.solver.step_frame().map_err(|error| Failure(error.to_string()))?;
         self.cost.wall += start.elapsed();
+        self.cost.processor += processor.elapsed();
         self.cost.substeps += u64::from(report.substeps);
         self.cost.particles = self.solver.positions().len();
         let iterations = f64::from(self.solver.iterations());

@@ -29,7 +29,7 @@ impl Preset {
                 kernel: KernelKind::Poly6Spiky3d,
                 gradients: Some(GradientPoint::Predicted),
                 mass_density: Some(MassDensityDescription::default()),
-                settle_substeps: 0,
+                settle_substeps: Some(0),
                 ..SolverSettings::default()
             },
         }

@@ -1,6 +1,6 @@
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::{MassDensityDescription, Preset};
+use super::{MassDensityDescription, Preset, Scene};
 
 /// How the constraints are solved.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -24,10 +24,11 @@ pub struct SolverSettings {
     pub tolerance: f64,
     /// Kernel radius h in spacings.
     pub kernel_radius: f64,
-    /// Where density gradients are evaluated; left out, `start` with gas and `predicted` without.
+    /// Where the density constraint is evaluated; left out, `predicted` where all fluids are liquids with a
+    /// surface, `start` where any resists dilation too (gas, `surface = "none"`).
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gradients: Option<GradientPoint>,
-    /// Relaxation of the density iteration, omega; left out, what is stable with the kernel radius.
+    /// Relaxation of the density iteration, omega; left out, what is stable with the kernel radius and `gradients`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub relaxation: Option<f64>,
     /// Shifting of liquids that fill their domain (`surface = "none"`), 0 to 0.2: the density error whose
@@ -46,8 +47,9 @@ pub struct SolverSettings {
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mass_density: Option<MassDensityDescription>,
     /// Substeps without gravity before time 0 that bring the start to its rest density: at most this many, fewer
-    /// where nothing moves any more. About three times the layers of the deepest liquid bring all of it there.
-    pub settle_substeps: u32,
+    /// where nothing moves any more. Left out, 100, and up to three times the layers of what is deep and narrow.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub settle_substeps: Option<u32>,
     /// Steps of the coarse projection before that of the particles: a grid of cells two spacings wide carries the
     /// smooth part of the pressure; 0 is off.
     pub coarse_projection: u32,
@@ -72,7 +74,7 @@ impl Default for SolverSettings {
             constraint_mixing: 0.0,
             artificial_pressure: 0.0,
             mass_density: None,
-            settle_substeps: 100,
+            settle_substeps: None,
             coarse_projection: 0,
             sleep: false,
         }
@@ -83,11 +85,13 @@ impl Default for SolverSettings {
 struct ByRadius {
     /// Kernel radius [spacings].
     radius: f64,
-    /// Relaxation that is stable with a free surface...
+    /// Relaxation that is stable with a free surface and gradients at the start or at the prediction...
     free: f64,
+    /// ...with a constraint taken half way...
+    half_way: f64,
     /// ...and in fluids that resist dilation too. One iteration per substep is linearly stable below
     /// 4/(3 lambda_max), lambda_max the largest eigenvalue of the iteration (2.9, 3.15 and 3.9 at 2, 2.5 and
-    /// 3 spacings); a free surface bears a little more.
+    /// 3 spacings); a free surface bears a little more. Taken half way it is stable below 2/lambda_max.
     filled: f64,
     /// Shifting of such liquids: about half of what is stable with that relaxation. The faster a mode is evened out,
     /// the less relaxation it bears.
@@ -99,16 +103,19 @@ struct ByRadius {
 
 #[rustfmt::skip]
 const BY_RADIUS: [ByRadius; 4] = [
-    ByRadius { radius: 2.0, free: 0.5, filled: 0.4, shifting: 0.03, compressibility: 0.533 },
-    ByRadius { radius: 2.5, free: 0.5, filled: 0.4, shifting: 0.04, compressibility: 0.335 },
-    ByRadius { radius: 3.0, free: 0.36, filled: 0.33, shifting: 0.03, compressibility: 0.183 },
-    ByRadius { radius: 4.0, free: 0.24, filled: 0.19, shifting: 0.015, compressibility: 0.062 },
+    ByRadius { radius: 2.0, free: 0.5, half_way: 0.62, filled: 0.4, shifting: 0.03, compressibility: 0.533 },
+    ByRadius { radius: 2.5, free: 0.5, half_way: 0.57, filled: 0.4, shifting: 0.04, compressibility: 0.335 },
+    ByRadius { radius: 3.0, free: 0.36, half_way: 0.48, filled: 0.33, shifting: 0.03, compressibility: 0.183 },
+    ByRadius { radius: 4.0, free: 0.24, half_way: 0.28, filled: 0.19, shifting: 0.015, compressibility: 0.062 },
 ];
 
 impl SolverSettings {
-    /// Relaxation omega of fluids with a free surface.
-    pub fn relaxation_of_liquids(&self) -> f64 {
-        self.relaxation.unwrap_or_else(|| self.by_radius(|row| row.free))
+    /// Relaxation omega of fluids with a free surface, the constraint taken there.
+    pub fn relaxation_of_liquids(&self, gradients: GradientPoint) -> f64 {
+        self.relaxation.unwrap_or_else(|| match gradients {
+            GradientPoint::Middle => self.by_radius(|row| row.half_way),
+            GradientPoint::Start | GradientPoint::Predicted => self.by_radius(|row| row.free),
+        })
     }
 
     /// Relaxation omega of gas, and of liquids without a surface.
@@ -122,9 +129,9 @@ impl SolverSettings {
     }
 
     /// D/omega of the law C_max = (D/omega) P dt^2/dx^2, for all iterations of a substep.
-    pub fn compressibility(&self) -> f64 {
+    pub fn compressibility(&self, gradients: GradientPoint) -> f64 {
         let iterations = f64::from(self.iterations.max(1));
-        self.by_radius(|row| row.compressibility) / (self.relaxation_of_liquids() * iterations)
+        self.by_radius(|row| row.compressibility) / (self.relaxation_of_liquids(gradients) * iterations)
     }
 
     /// Linear between the rows of the table, constant beyond its ends.
@@ -135,6 +142,21 @@ impl SolverSettings {
         let (below, above) = (&BY_RADIUS[upper - 1], &BY_RADIUS[upper]);
         let part = (radius - below.radius) / (above.radius - below.radius);
         column(below) + part * (column(above) - column(below))
+    }
+}
+
+impl Scene {
+    /// Where the density constraint is evaluated: what `solver.gradients` says, or else what suits the fluids.
+    pub fn gradients(&self) -> GradientPoint {
+        let fluids = || self.materials().filter(|material| material.phase().is_fluid());
+        let default = if fluids().next().is_none() || self.solver.mass_density.is_some() {
+            GradientPoint::Predicted
+        } else if fluids().any(|fluid| fluid.is_two_sided()) {
+            GradientPoint::Start
+        } else {
+            GradientPoint::Predicted
+        };
+        self.solver.gradients.unwrap_or(default)
     }
 }
 
@@ -170,7 +192,7 @@ read_over_preset! {
     constraint_mixing: f64,
     artificial_pressure: f64,
     mass_density: Option<MassDensityDescription>,
-    settle_substeps: u32,
+    settle_substeps: Option<u32>,
     coarse_projection: u32,
     sleep: bool,
 }

@@ -25,7 +25,7 @@ impl SubstepLaw {
         SubstepLaw {
             spacing: scene.spacing,
             target: scene.solver.target_compression,
-            compressibility: scene.solver.compressibility(),
+            compressibility: scene.solver.compressibility(scene.gradients()),
             coarse: scene.solver.coarse_projection > 0,
         }
     }

@@ -2,7 +2,7 @@
 
 use super::substeps::Demand;
 use super::world::World;
-use crate::math::{Real, Vector64, wide};
+use crate::math::{Real, Vector, Vector64, wide};
 use crate::observe::{Event, Severity};
 use crate::phase::Phase;
 
@@ -66,15 +66,28 @@ impl World {
         if gravity == 0.0 {
             return 0.0;
         }
-        let (down, particles) = (parts.gravity / gravity, &parts.particles);
-        let height = |row: usize| match particles.phase[row] {
-            phase if counted(phase) => particles.position[row].dot(down),
+        let depth = self.extent_along(parts.gravity / gravity, counted);
+        if depth.is_finite() { f64::from(gravity) * depth * self.density_ratio() } else { 0.0 }
+    }
+
+    /// How far these phases extend in this direction [m]; not finite where there are none.
+    fn extent_along(&self, direction: Vector, counted: fn(Phase) -> bool) -> f64 {
+        let (parts, particles) = (&self.parts, &self.parts.particles);
+        let place = |row: usize| match particles.phase[row] {
+            phase if counted(phase) => particles.position[row].dot(direction),
             _ => Real::NAN,
         };
-        let low = parts.parallelism.max(particles.dense(), height);
-        let high = parts.parallelism.max(particles.dense(), |row| -height(row));
-        let depth = f64::from(low) + f64::from(high);
-        if depth.is_finite() { f64::from(gravity) * depth * self.density_ratio() } else { 0.0 }
+        let most = parts.parallelism.max(particles.dense(), place);
+        let least = parts.parallelism.max(particles.dense(), |row| -place(row));
+        f64::from(most) + f64::from(least)
+    }
+
+    /// Width and depth of the liquids, across gravity and along it [m]; 0 without either.
+    pub(super) fn extent(&self) -> [f64; 2] {
+        let gravity = self.parts.gravity.length();
+        let down = if gravity > 0.0 { self.parts.gravity / gravity } else { Vector::ZERO };
+        let extents = [down.perp(), down].map(|direction| self.extent_along(direction, is_liquid));
+        if extents.iter().all(|extent| extent.is_finite()) { extents } else { [0.0; 2] }
     }
 
     /// Pressure over density of the liquids after the last substep [m^2/s^2]: the largest one if it

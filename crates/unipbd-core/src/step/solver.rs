@@ -79,7 +79,7 @@ impl Solver {
     }
 
     /// Projects the start without gravity until it is at rest density.
-    pub(crate) fn settle(&mut self, substeps: u32) {
+    pub(crate) fn settle(&mut self, substeps: Option<u32>) {
         self.on_threads(|world| world.settle(substeps));
     }
 

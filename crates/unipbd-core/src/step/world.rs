@@ -24,6 +24,12 @@ use crate::walls::Walls;
 
 /// Settling ends where no particle moves farther than this many spacings in a substep.
 const SETTLED: f64 = 1e-5;
+/// Projections that settle any start...
+const SETTLING: f64 = 100.0;
+/// ...and those that each layer takes where the liquid is no wider than...
+const SETTLING_PER_LAYER: f64 = 3.0;
+/// ...this many spacings: walls make the rows beside them too dense, and a wider one hardly rises by that.
+const NARROW: f64 = 16.0;
 
 /// What a scene is made of, before the loop sees it.
 pub(crate) struct Parts {
@@ -292,7 +298,8 @@ impl World {
     }
 
     /// Brings the start to its rest density: projection without gravity and without velocity.
-    pub fn settle(&mut self, substeps: u32) {
+    pub fn settle(&mut self, substeps: Option<u32>) {
+        let substeps = substeps.unwrap_or_else(|| self.settling());
         self.clock.dt = self.parts.frame_time;
         self.clock.pressure_limit = self.pressure_limit();
         if self.parts.particles.dense() > 0 {
@@ -306,6 +313,12 @@ impl World {
             self.find_neighbors();
         }
         self.clock = Clock { generation: self.clock.generation, ..Clock::default() };
+    }
+
+    /// Projections that bring the start to its rest density, if nothing is said about them.
+    fn settling(&self) -> u32 {
+        let [width, layers] = self.extent().map(|extent| extent / self.parts.spacing);
+        (SETTLING_PER_LAYER * layers * (NARROW / width).min(1.0)).max(SETTLING) as u32
     }
 
     /// This moment as groups and effects see it.

@@ -61,7 +61,7 @@ pub fn plume() -> Scene {
 pub fn mixed() -> Scene {
     let scripted = Points { velocity: [0.2, 0.0], motion: PointMotion::Scripted, ..points("oil", &[[1.0, 1.6]]) };
     Scene {
-        solver: SolverSettings { substeps: Substeps::Fixed(6), settle_substeps: 5, ..SolverSettings::default() },
+        solver: SolverSettings { substeps: Substeps::Fixed(6), settle_substeps: Some(5), ..SolverSettings::default() },
         liquid: vec![
             Liquid { name: "water".into(), ..Liquid::default() },
             Liquid { name: "oil".into(), density: 800.0, viscosity: 0.05, ..Liquid::default() },

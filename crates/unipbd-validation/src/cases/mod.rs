@@ -8,7 +8,7 @@ mod layers;
 mod pool;
 mod wave;
 
-pub use pool::SUBSTEPS_PER_FRAME;
+pub use pool::{DENSITY_ERROR, LEVEL, SUBSTEPS_PER_FRAME};
 
 use crate::case::Case;
 

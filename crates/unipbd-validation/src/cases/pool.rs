@@ -3,12 +3,25 @@
 use unipbd_core::Solver;
 
 use crate::case::{Band, Case, Figure, Measured, TARGETS, Trial};
+use crate::compression::{Errors, Estimator};
 use crate::exact::{MARTIN_MOYCE_FRONT, MARTIN_MOYCE_HEIGHT};
 use crate::runner::{Failure, Runner, energy, points};
 use crate::scenes::{GRAVITY, SPACING, body, pool};
 
 /// The figure that tells the work of a frame per particle.
 pub const SUBSTEPS_PER_FRAME: &str = "substeps per frame";
+
+/// Mean size of the density error by a measure that is the same for all kernels.
+pub const DENSITY_ERROR: &str = "density error, cubic spline of 4 dx";
+/// The level of a column against that of the start.
+pub const LEVEL: &str = "level error";
+
+/// Density errors of the interior, by a spline as wide as the widest kernel that is compared: a narrower one would favour
+/// kernels that are like it, and see the arrangement more than the pressure.
+fn interior(solver: &Solver, width: f64, height: f64) -> Errors {
+    let estimator = Estimator { spacing: SPACING, radius: 4.0, tank: [width * SPACING, height * SPACING] };
+    estimator.errors(&points(solver).map(|x| [x.x, x.y]).collect::<Vec<_>>())
+}
 
 /// A column at rest: its pressure, its level, its noise.
 pub const COLUMN: Case = Case {
@@ -29,6 +42,7 @@ fn column(trial: &Trial) -> Result<Measured, Failure> {
     let frames = (60.0 * 20.0 * (depth * SPACING / GRAVITY).sqrt()).ceil().clamp(120.0, 2400.0) as u32;
     run.frames(frames, |_| ())?;
     let (mut worst, mut mean, mut height, mut square, mut slope, mut force) = (0.0f64, 0.0, 0.0, 0.0, 0.0, 0.0);
+    let mut errors = Errors::default();
     let mass = 1000.0 * SPACING * SPACING * run.solver.positions().len() as f64;
     run.frames(30, |solver| {
         let diagnostics = solver.diagnostics();
@@ -38,6 +52,7 @@ fn column(trial: &Trial) -> Result<Measured, Failure> {
         square += 2.0 * diagnostics.kinetic_energy / mass / 30.0;
         slope += pressure_slope(solver) / 30.0;
         force += floor_force(solver) / 30.0;
+        errors = errors.and(interior(solver, 16.0, 4.0 * depth));
     })?;
     let target = trial.solver.target_compression;
     // 1.3 % at a target of 1 %, 0.15 % at 0.1 %.
@@ -46,7 +61,7 @@ fn column(trial: &Trial) -> Result<Measured, Failure> {
     let figures = vec![
         Figure::new("mean C", mean, Band::OPEN),
         Figure::new("C_max over the target", worst / target, Band::between(0.0, over)),
-        Figure::new("level error", height / (depth * SPACING) - 1.0, trial.from_target(0.01, Band::within(0.012))),
+        Figure::new(LEVEL, height / (depth * SPACING) - 1.0, trial.from_target(0.01, Band::within(0.012))),
         Figure::new("pressure slope error", slope / GRAVITY - 1.0, trial.from_target(0.01, Band::within(0.02))),
         Figure::new(
             "error of the force on the floor",
@@ -54,6 +69,7 @@ fn column(trial: &Trial) -> Result<Measured, Failure> {
             trial.from_target(0.01, Band::within(0.02)),
         ),
         Figure::new("v_rms [dx/s]", square.sqrt() / SPACING, Band::between(0.0, 0.8)),
+        Figure::new(DENSITY_ERROR, errors.mean(), Band::OPEN),
         Figure::new(SUBSTEPS_PER_FRAME, substeps, Band::OPEN),
     ];
     Ok((figures, run.cost))
@@ -93,6 +109,7 @@ fn dam_break(trial: &Trial) -> Result<Measured, Failure> {
     let start = energy(&run.solver);
     let (mut front, mut column) = (vec![(0.0, 1.0)], Vec::new());
     let (mut worst, mut mean, mut gain) = (0.0f64, Vec::new(), 0.0f64);
+    let mut errors = Errors::default();
     let frames = (60.0 * 3.6 / scale).ceil() as u32;
     run.frames(frames, |solver| {
         let diagnostics = solver.diagnostics();
@@ -101,6 +118,7 @@ fn dam_break(trial: &Trial) -> Result<Measured, Failure> {
         worst = worst.max(diagnostics.density_error_max);
         mean.push(diagnostics.density_error_mean);
         gain = gain.max((diagnostics.kinetic_energy + diagnostics.potential_energy) / start - 1.0);
+        errors = errors.and(interior(solver, 6.0 * a, 8.0 * a));
     })?;
     let (offset, error) = fit_offset(&front, &MARTIN_MOYCE_FRONT);
     let ahead = front.iter().map(|(time, z)| z - (1.0 + 2.0 * time)).fold(f64::MIN, f64::max);
@@ -115,6 +133,7 @@ fn dam_break(trial: &Trial) -> Result<Measured, Failure> {
         Figure::new("worst C", worst, Band::between(0.0, 0.06)),
         Figure::new("energy gain", gain, Band::between(f64::NEG_INFINITY, 0.005)),
         Figure::new("front at T = 2.5", at(&front, 2.5), Band::OPEN),
+        Figure::new(DENSITY_ERROR, errors.mean(), Band::OPEN),
     ];
     Ok((figures, run.cost))
 }

@@ -145,7 +145,7 @@ fn solver(random: &mut Random) -> SolverSettings {
     SolverSettings {
         substeps: if random.chance(0.7) { Substeps::Auto } else { Substeps::Fixed(random.whole(1, 12)) },
         max_substeps: 48,
-        settle_substeps: 20,
+        settle_substeps: Some(20),
         ..SolverSettings::default()
     }
 }

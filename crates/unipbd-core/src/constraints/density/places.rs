@@ -2,19 +2,24 @@
 
 use crate::bytes::held;
 use crate::constraints::Substep;
-use crate::math::{Real, Vector, real};
+use crate::math::{Real, Vector, larger, real};
 use crate::particles::Particles;
 use crate::scene::GradientPoint;
 use std::ops::Range;
 
 /// Farther than this many spacings from the origin f32 keeps too few digits of a position for kernels.
 const FAR: Real = 4096.0;
+/// Half way is at most this many spacings behind the prediction: half of what the Courant condition lets a particle go.
+/// One that is too fast for its substeps is stopped by walls and others, and was never half way back along its velocity.
+const FARTHEST_BACK: Real = 0.2;
 
 /// The positions that a density iteration works with.
 pub(super) struct Places {
     gradients: GradientPoint,
     /// [`FAR`] in metres.
     far: Real,
+    /// [`FARTHEST_BACK`] in metres.
+    farthest_back: Real,
     /// Half way between start and prediction, where the constraint is taken there.
     middle: Vec<Vector>,
     /// Far from the origin: positions from the middle of the domain, with the digits that rounding kept out
@@ -26,8 +31,8 @@ pub(super) struct Places {
 
 impl Places {
     pub fn new(gradients: GradientPoint, spacing: f64) -> Places {
-        let far = FAR * real(spacing);
-        Places { gradients, far, middle: Vec::new(), value: Vec::new(), gradient: Vec::new() }
+        let (far, farthest_back) = (FAR * real(spacing), FARTHEST_BACK * real(spacing));
+        Places { gradients, far, farthest_back, middle: Vec::new(), value: Vec::new(), gradient: Vec::new() }
     }
 
     pub fn memory_bytes(&self) -> usize {
@@ -52,9 +57,10 @@ impl Places {
         if self.gradients != GradientPoint::Middle {
             return;
         }
-        let (positions, velocities, half) = (now.particles.positions(), now.particles.velocities(), 0.5 * now.dt);
+        let (positions, velocities) = (now.particles.positions(), now.particles.velocities());
+        let (half, farthest) = (0.5 * now.dt, self.farthest_back);
         self.middle.resize(now.particles.dense(), Vector::ZERO);
-        now.parallelism.fill(&mut self.middle, |row| positions[row] - velocities[row] * half);
+        now.parallelism.fill(&mut self.middle, |row| positions[row] - back(velocities[row], half, farthest));
     }
 
     /// Rows are in the order of cells: where all are far from the origin, the first and the last one are.
@@ -70,9 +76,10 @@ impl Places {
         let (starts, displacements) = (particles.starts(), &particles.displacement);
         let (remainders, velocities) = (&particles.remainder, particles.velocities());
         let origin = middle_of(now, starts);
-        let back = if self.gradients == GradientPoint::Middle { 0.5 * now.dt } else { 0.0 };
+        let half = if self.gradients == GradientPoint::Middle { 0.5 * now.dt } else { 0.0 };
+        let farthest = self.farthest_back;
         now.parallelism.fill(&mut self.value, |row| {
-            (starts[row] - origin) + (displacements[row] + remainders[row]) - velocities[row] * back
+            (starts[row] - origin) + (displacements[row] + remainders[row]) - back(velocities[row], half, farthest)
         });
         now.parallelism.fill(&mut self.gradient, |row| (starts[row] - origin) + remainders[row]);
     }
@@ -118,6 +125,14 @@ impl Places {
     pub fn pair_gradients<'a>(&'a self, now: Substep<'a>) -> &'a [Vector] {
         &self.other_pair_gradients(now).unwrap_or(self.pair_values(now))[..now.particles.dense()]
     }
+}
+
+/// The way back over this time [s], no longer than `farthest` [m].
+#[inline]
+fn back(velocity: Vector, time: Real, farthest: Real) -> Vector {
+    let way = velocity * time;
+    let square = farthest * farthest;
+    way * (square / larger(way.length_squared(), square)).sqrt()
 }
 
 /// The middle of the box around all rows.

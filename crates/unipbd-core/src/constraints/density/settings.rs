@@ -95,14 +95,13 @@ impl DensitySettings {
         let materials: Vec<DensityMaterial> = materials.collect();
         let shifts = materials.iter().any(|material| material.shifting > 0.0);
         let repels = materials.iter().any(|material| material.repulsion > 0.0);
-        let default_gradients = if two_sided { GradientPoint::Start } else { GradientPoint::Predicted };
         DensitySettings {
             kernel: scene.solver.kernel,
             kernel_radius: radius,
             spacing: scene.spacing,
             volume: real(volume),
             moment: sums.moment,
-            gradients: scene.solver.gradients.unwrap_or(default_gradients),
+            gradients: scene.gradients(),
             uniform_inverse_mass: uniform_mass(scene).map(|mass| real(1.0 / mass)),
             artificial_pressure: real(scene.solver.artificial_pressure * scene.spacing * scene.spacing),
             upheld: !two_sided,
@@ -122,7 +121,7 @@ impl DensityMaterial {
         }
         let response = rest_response / mass;
         let one_sided = DensityMaterial {
-            relaxation: real(scene.solver.relaxation_of_liquids()),
+            relaxation: real(scene.solver.relaxation_of_liquids(scene.gradients())),
             multiplier_min: 0.0,
             gate: Real::NEG_INFINITY,
             response_min: real(1e-6 * response),

@@ -64,8 +64,14 @@ fn check_solver(checker: &mut Checker) {
     );
     let tolerance = solver.tolerance;
     checker.range(path("tolerance"), tolerance, Allowed::NotNegative, "0.01 stops at 1 % compression; 0 never stops");
-    let settle = f64::from(solver.settle_substeps);
-    checker.range(path("settle_substeps"), settle, Allowed::Between(0.0, 100_000.0), "the default is 100");
+    if let Some(settle) = solver.settle_substeps.map(f64::from) {
+        checker.range(
+            path("settle_substeps"),
+            settle,
+            Allowed::Between(0.0, 100_000.0),
+            "leave it out for 100 or more",
+        );
+    }
     let radius = solver.kernel_radius;
     checker.range(path("kernel_radius"), radius, Allowed::Between(1.5, 4.0), "in spacings; the default is 3");
     let target = solver.target_compression;
