@@ -26,11 +26,11 @@ fn block_is_counted_by_its_lattice() {
 
 #[test]
 fn automatic_substeps_grow_with_the_root_of_depth() {
-    // C = (0.183/0.36) g depth / n^2 frame^2 / dx^2 <= 1 % at g = 9.81, dx = 0.1: n = 3.72 per root of a metre.
+    // C = (0.183/0.48) g depth / n^2 frame^2 / dx^2 <= 1 % at g = 9.81, dx = 0.1: n = 3.22 per root of a metre.
     let substeps = |depth| water([0.0, 0.0], [1.0, depth]).estimate().substeps;
     assert_eq!(substeps(1.0), 4);
-    assert_eq!(substeps(4.0), 8);
-    assert_eq!(substeps(16.0), 15);
+    assert_eq!(substeps(4.0), 7);
+    assert_eq!(substeps(16.0), 13);
 }
 
 #[test]

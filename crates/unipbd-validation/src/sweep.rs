@@ -137,7 +137,11 @@ pub const VARIANTS: &[Variant] = &[
         },
         scan: Scan::Iterations,
     },
+    Variant { name: COARSE, change: |s| s.coarse_projection = 2, scan: Scan::Targets },
 ];
+
+/// Drawn, but not judged: it carries one liquid in static walls alone, and is no choice for all of these cases.
+const COARSE: &str = "coarse projection, n by target";
 
 /// Sets kernel radius and where the constraint is taken.
 fn at(settings: &mut SolverSettings, radius: f64, gradients: GradientPoint) {
@@ -229,7 +233,8 @@ impl Swept {
                 .collect(),
         };
         let mut curves: Vec<Curve> = VARIANTS.iter().map(curve).collect();
-        mark_front(&mut curves, SCATTER);
+        let judged = curves.iter().position(|curve| curve.name == COARSE).unwrap_or(curves.len());
+        mark_front(&mut curves[..judged], SCATTER);
         let mut csv = String::new();
         for (timed, point) in done().zip(curves.iter().flat_map(|curve| &curve.points)) {
             let substeps = match timed.settings.substeps {

@@ -24,8 +24,8 @@ pub struct SolverSettings {
     pub tolerance: f64,
     /// Kernel radius h in spacings.
     pub kernel_radius: f64,
-    /// Where the density constraint is evaluated; left out, `predicted` where all fluids are liquids with a
-    /// surface, `start` where any resists dilation too (gas, `surface = "none"`).
+    /// Where the density constraint is evaluated; left out, `start` where any fluid resists dilation too (gas,
+    /// `surface = "none"`), `predicted` beside bodies and after a coarse projection, else `middle`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gradients: Option<GradientPoint>,
     /// Relaxation of the density iteration, omega; left out, what is stable with the kernel radius and `gradients`.
@@ -153,6 +153,8 @@ impl Scene {
             GradientPoint::Predicted
         } else if fluids().any(|fluid| fluid.is_two_sided()) {
             GradientPoint::Start
+        } else if self.body.is_empty() && self.solver.coarse_projection == 0 {
+            GradientPoint::Middle
         } else {
             GradientPoint::Predicted
         };
