@@ -7,6 +7,8 @@ use super::{Emitter, Profile, Scene, SubstepLaw, Substeps};
 pub const BYTES_PER_PARTICLE: u64 = 300;
 /// Rough time per particle and substep on one core [s].
 pub const SECONDS_PER_PARTICLE_AND_SUBSTEP: f64 = 60e-9;
+/// The same with a coarse projection, whose substeps are long: each has a grid to solve and a list to make.
+pub const SECONDS_WITH_COARSE_PROJECTION: f64 = 160e-9;
 
 /// What a scene would cost. Upper bounds where the run decides: throttled emitters emit less, and
 /// gas may be removed before its lifetime is over.
@@ -39,13 +41,15 @@ impl Scene {
             Substeps::Auto => automatic_substeps(self),
         };
         let steps = self.fps * f64::from(substeps);
+        let coarse = self.solver.coarse_projection > 0;
+        let each = if coarse { SECONDS_WITH_COARSE_PROJECTION } else { SECONDS_PER_PARTICLE_AND_SUBSTEP };
         Estimate {
             particles_at_start: population.start as u64,
             emitted_per_second,
             particles_at_peak: population.peak.ceil() as u64,
             substeps,
             memory_bytes: (population.peak.ceil() as u64).saturating_mul(BYTES_PER_PARTICLE),
-            cost_seconds: population.particle_seconds * steps * SECONDS_PER_PARTICLE_AND_SUBSTEP,
+            cost_seconds: population.particle_seconds * steps * each,
         }
     }
 
@@ -150,7 +154,12 @@ fn changes(scene: &Scene) -> Vec<Change> {
 
 /// Substeps per frame for the speeds and depths at the start.
 fn automatic_substeps(scene: &Scene) -> u32 {
-    let wanted = SubstepLaw::new(scene).wanted(1.0 / scene.fps, largest_speed(scene), pressure_over_density(scene));
+    let (mut speed, pressure) = (largest_speed(scene), pressure_over_density(scene));
+    if scene.solver.coarse_projection > 0 {
+        // Substeps follow the speed alone: about that of a fall through half the depth, once it moves.
+        speed = speed.max(pressure.sqrt());
+    }
+    let wanted = SubstepLaw::new(scene).wanted(1.0 / scene.fps, speed, pressure);
     let count = wanted.into_iter().fold(1.0, f64::max).ceil();
     (count as u32).min(scene.solver.max_substeps)
 }

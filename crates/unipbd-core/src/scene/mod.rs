@@ -30,7 +30,7 @@ pub use bodies::{
 };
 pub use contacts::{ContactDescription, ContactMethod};
 pub use description::{Domain, Environment, Scene, View};
-pub use estimate::{BYTES_PER_PARTICLE, Estimate, SECONDS_PER_PARTICLE_AND_SUBSTEP};
+pub use estimate::{BYTES_PER_PARTICLE, Estimate, SECONDS_PER_PARTICLE_AND_SUBSTEP, SECONDS_WITH_COARSE_PROJECTION};
 pub use expect::{BodyExpectation, Expect, MaterialExpectation};
 pub use materials::{Gas, Liquid, LiquidSurface, MaterialRef, Smoke, Solid};
 pub use nearest::nearest;
