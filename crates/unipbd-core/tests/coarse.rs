@@ -60,7 +60,7 @@ fn a_deep_column_stands_on_one_substep() {
     assert!(worst < 0.013, "{worst}");
     assert!((height / depth - 1.0).abs() < 0.012, "{height}");
     assert!((slope / GRAVITY - 1.0).abs() < 0.02, "{slope}");
-    assert!((floor / weight - 1.0).abs() < 0.02, "{}", floor / weight);
+    assert!((floor / weight - 1.0).abs() < 0.01, "{}", floor / weight);
 }
 
 #[test]

@@ -200,19 +200,22 @@ impl System {
     }
 
     /// The closed parts of all faces of the liquid: the middle of the face, the way out of the liquid, and the
-    /// pressure times the closed part [m/s].
+    /// pressure at it, half a cell on from the centre, times the closed part [m/s].
     pub fn closed_faces(&self, lattice: &Lattice, openings: &Openings, mut visit: impl FnMut(Vector, Vector, Real)) {
         let (stride, half) = (lattice.stride(), 0.5 * lattice.cell);
         for cell in (0..lattice.len()).filter(|&cell| self.depth[cell] >= 0.0) {
             let centre = lattice.corner(cell) + Vector::splat(half);
             let faces = [
-                (openings.left[cell], Vector::NEG_X),
-                (openings.left[cell + 1], Vector::X),
-                (openings.lower[cell], Vector::NEG_Y),
-                (openings.lower[cell + stride], Vector::Y),
+                (openings.left[cell], cell + 1, Vector::NEG_X),
+                (openings.left[cell + 1], cell - 1, Vector::X),
+                (openings.lower[cell], cell + stride, Vector::NEG_Y),
+                (openings.lower[cell + stride], cell - stride, Vector::Y),
             ];
-            for (open, outward) in faces.into_iter().filter(|(open, _)| *open < 1.0) {
-                visit(centre + outward * half, outward, (1.0 - open) * self.pressure[cell]);
+            for (open, behind, outward) in faces.into_iter().filter(|(open, ..)| *open < 1.0) {
+                let liquid = self.depth[behind] >= 0.0;
+                let gain = if liquid { 1.0 } else { ghost(self.depth[cell], self.depth[behind]) };
+                let at_face = self.pressure[cell] + 0.5 * gain * (self.pressure[cell] - self.pressure[behind]);
+                visit(centre + outward * half, outward, (1.0 - open) * at_face);
             }
         }
     }
