@@ -91,10 +91,11 @@ impl Lattice {
         (x - self.origin) * (1.0 / self.cell) - self.lower
     }
 
-    /// Whether a place, in cells, has all its nodes.
+    /// Whether a place, in cells, has all its nodes, however it is rounded.
     #[inline(always)]
     pub fn holds(&self, place: Vector) -> bool {
-        place.x > 0.0 && place.y > 0.0 && place.x < self.width as Real && place.y < self.height as Real
+        let (right, top) = (self.width as Real - 0.5, self.height as Real - 0.5);
+        place.x > 0.5 && place.y > 0.5 && place.x < right && place.y < top
     }
 
     /// The nodes around a place, in cells, of a grid whose first node lies at `offset`.
@@ -107,9 +108,11 @@ impl Lattice {
         Nodes { first: j as usize * self.stride() + i as usize, weights }
     }
 
-    /// The numbers of all cells whose nodes places between two heights, in cells, may have.
+    /// The numbers of all cells whose nodes places between two heights, in cells, may have. One row more than needed:
+    /// a place just below a cell's border may be rounded onto it.
     pub fn cells_between(&self, low: Real, high: Real) -> Range<usize> {
-        low as usize * self.stride()..(high as usize + 3) * self.stride()
+        let rows = (high as usize + 4).min(self.height + 2);
+        low as usize * self.stride()..rows * self.stride()
     }
 }
 

@@ -7,6 +7,7 @@ use std::ops::Range;
 pub struct Corrections {
     displacement: Vec<Vector>,
     shift: Vec<Vector>,
+    moved: bool,
     load: Vec<Vector>,
     wall_load: Vec<Vector64>,
 }
@@ -31,6 +32,16 @@ impl Corrections {
     pub fn shifts_mut(&mut self) -> &mut [Vector] {
         self.shift.resize(self.displacement.len(), Vector::ZERO);
         &mut self.shift
+    }
+
+    /// Rows were moved before by what velocities do not follow.
+    pub(crate) fn note_moved(&mut self) {
+        self.moved = true;
+    }
+
+    /// Whether any row moves by what its velocity does not follow.
+    pub(crate) fn any_shifted(&self) -> bool {
+        self.moved || !self.shift.is_empty()
     }
 
     /// Forces on samples of rigid bodies times dt^2, by dense row [kg m]; empty in a scene without bodies.
@@ -68,6 +79,7 @@ impl Corrections {
         self.displacement.resize(rows, Vector::ZERO);
         written.into_iter().for_each(|band| self.displacement[band].fill(Vector::ZERO));
         self.shift.clear();
+        self.moved = false;
         self.load.clear();
         self.load.resize(samples, Vector::ZERO);
         self.wall_load.clear();

@@ -176,7 +176,7 @@ pub(super) fn apply(particles: &mut Particles, corrections: &Corrections, walls:
 /// Whether what was turned out of a wall may be in another one. Friction stops a displacement, but not a shift: in a
 /// corner it could let one wall undo the way that the other turns it back.
 fn turns_out_again(corrections: &Corrections, walls: &Walls) -> bool {
-    walls.are_crowded() || !corrections.shifts().is_empty()
+    walls.are_crowded() || corrections.any_shifted()
 }
 
 /// What [`apply`] will push against the measured walls: minus the momentum it gives, times dt [kg m].

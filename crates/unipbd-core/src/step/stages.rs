@@ -161,6 +161,9 @@ impl World {
     }
 
     fn take_up_corrections(&mut self) {
+        if self.parts.coarse.is_some() {
+            self.corrections.note_moved();
+        }
         integrate::shift(&mut self.parts.particles, &self.corrections, self.parts.parallelism);
         self.measure_walls();
         let parts = &mut self.parts;

@@ -122,7 +122,14 @@ pub fn random_scene(seed: u64) -> Scene {
         let face = [0.5 * width * spacing, 0.7 * height * spacing];
         scene.emitter.push(nozzle(&material, face, 3.0 * spacing, 0.3 * frame));
     }
-    scene
+    if seed.is_multiple_of(2) { with_coarse_projection(scene) } else { scene }
+}
+
+/// The scene with a coarse projection, if that can carry it. Nothing is drawn: all others stay what they were.
+fn with_coarse_projection(scene: Scene) -> Scene {
+    let solver = SolverSettings { coarse_projection: 2, ..scene.solver.clone() };
+    let coarse = Scene { solver, ..scene.clone() };
+    if coarse.validate().0.is_empty() { coarse } else { scene }
 }
 
 /// The speed that a scene can account for [m/s].
