@@ -10,7 +10,7 @@ use std::time::Instant;
 use unipbd_core::neighbors::{Grid, NeighborList, Periodic};
 use unipbd_core::parallel::Parallelism::{self, Pool, Serial};
 use unipbd_core::simd::{
-    DensityInput, DensityOutput, Level, Pairs, Reach, Records, Staggered, Weights, WendlandC2, correction, density,
+    DensityInput, DensityOutput, Level, Pairs, Reach, Records, Weights, WendlandC2, correction, density,
     difference_gradient, laplacian, repulsion, vorticity, xsph, xsph_mixed,
 };
 use unipbd_core::{Real, Vector};
@@ -147,12 +147,10 @@ fn pass_entries<'a>(case: &'a Case, level: Level, parallelism: Parallelism, tag:
     let rows = case.x.len();
     let kernel = WendlandC2::new(f64::from(RADIUS));
     let pairs = Pairs::new(&case.list, Periodic::NONE, parallelism).at_level(level);
-    // As the solver holds them.
-    let (mut a, mut b, mut g) = (Staggered::new(rows), Staggered::new(rows), Staggered::new(rows));
-    let (mut e, mut f, mut h) = (a.clone(), b.clone(), g.clone());
-    let mut m = vec![Vector::ZERO; rows];
-    let (mut g1, mut g2, mut g3, mut g4) = (m.clone(), m.clone(), m.clone(), m.clone());
-    let (mut c, mut d) = (vec![0.0; rows], vec![0.0; rows]);
+    let (mut a, mut b, mut g) = (vec![0.0; rows], vec![0.0; rows], vec![Vector::ZERO; rows]);
+    let (mut g1, mut g2, mut g3, mut g4) = (g.clone(), g.clone(), g.clone(), g.clone());
+    let (mut c, mut d, mut e, mut f) = (a.clone(), a.clone(), a.clone(), a.clone());
+    let (mut h, mut m) = (g.clone(), g.clone());
     let traits: Vec<_> = case.field.iter().map(|&value| Vector::new(0.1, 1.0 + value)).collect();
     let one = Weights::Uniform(1.0);
     let [mut r1, mut r2, mut r3, mut r4] = std::array::from_fn(|_| Records::default());

@@ -14,7 +14,6 @@ mod passes;
 mod records;
 mod shapes;
 pub(crate) mod space;
-mod staggered;
 pub(crate) mod weigh;
 
 #[cfg(all(target_arch = "x86_64", not(feature = "f64")))]
@@ -34,7 +33,6 @@ pub use passes::{
 };
 pub use records::Records;
 pub use shapes::{Alternative, CubicSpline, Mixed, Number, Poly6, Shape, SlopeAsValue, Spiky, Tensile, WendlandC2};
-pub use staggered::Staggered;
 
 /// An instruction set that passes are compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

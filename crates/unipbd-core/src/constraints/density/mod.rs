@@ -16,7 +16,7 @@ use super::{ConstraintGroup, Corrections, DensityColumns, Needs, Substep};
 use crate::bytes::held;
 use crate::kernel::Kernel;
 use crate::math::{Real, Vector};
-use crate::simd::{Records, Staggered};
+use crate::simd::Records;
 use crate::walls::Coverage;
 use places::Places;
 
@@ -40,20 +40,20 @@ pub struct Density {
 /// Kernel sums over the neighbours of each row, the row itself left out.
 #[derive(Clone, Debug, Default)]
 struct Sums {
-    value: Staggered<Real>,
-    gradient: Staggered<Vector>,
-    response: Staggered<Real>,
+    value: Vec<Real>,
+    gradient: Vec<Vector>,
+    response: Vec<Real>,
 }
 
 impl Sums {
     fn memory_bytes(&self) -> usize {
-        self.value.memory_bytes() + self.gradient.memory_bytes() + self.response.memory_bytes()
+        held(&self.value) + held(&self.gradient) + held(&self.response)
     }
 
     fn resize(&mut self, rows: usize) {
-        self.value.resize(rows);
-        self.gradient.resize(rows);
-        self.response.resize(rows);
+        self.value.resize(rows, 0.0);
+        self.gradient.resize(rows, Vector::ZERO);
+        self.response.resize(rows, 0.0);
     }
 }
 
