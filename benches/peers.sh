@@ -22,5 +22,5 @@ library=$(ldconfig -p 2>/dev/null | grep -o '/.*libGL\.so\.1$' | head -n 1)
 export RAYON_NUM_THREADS=1 CARGO_TARGET_DIR="$PWD/target/peers"
 cargo build --quiet --release --manifest-path benches/peers/Cargo.toml || exit 1
 mkdir -p docs/images
-target/peers/release/unipbd-peers --chart docs/images/peers.svg "$@" >docs/peers.md.new || exit 1
+target/peers/release/unipbd-peers --chart docs/images/peers.svg --pictures docs/images "$@" >docs/peers.md.new || exit 1
 mv docs/peers.md.new docs/peers.md

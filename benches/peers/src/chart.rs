@@ -1,4 +1,29 @@
-//! A chart of horizontal bars on a logarithmic axis.
+//! Horizontal bars on a logarithmic axis, and errors over time.
+
+use unipbd_validation::chart::{Curve, Point, log_log, mark_front};
+
+use crate::case::{Case, Outcome};
+
+/// The outcomes of each solver and setting as a curve over its targets.
+pub fn curves(outcomes: &[Outcome], seconds: f64) -> Vec<Curve> {
+    let mut curves: Vec<Curve> = Vec::new();
+    for outcome in outcomes {
+        let name = outcome.solver.split(", target").next().unwrap_or_default().to_owned();
+        let point = Point { x: outcome.time / seconds, y: outcome.mean_compression(), best: false };
+        match curves.iter_mut().find(|curve| curve.name == name) {
+            Some(curve) => curve.points.push(point),
+            None => curves.push(Curve { name, points: vec![point] }),
+        }
+    }
+    curves
+}
+
+/// All solvers on one picture.
+pub fn errors(case: &Case, particles: usize, curves: &mut [Curve]) -> String {
+    mark_front(curves, 0.0);
+    let title = format!("{} of {particles} particles, one thread", case.name);
+    log_log(&title, "processor time per simulated second [s]", "mean compression, by one estimate for all", curves)
+}
 
 /// An SVG of named numbers, all above 0.
 pub fn bars(title: &str, bars: &[(String, f64)]) -> String {

@@ -1,7 +1,8 @@
 //! unipbd beside other solvers, in one run: `benches/peers.sh` prepares all of them and starts this.
 //!
 //! `unipbd-peers [--particles 5000,20000] [--seconds 2] [--bodies 5000] [--rows 100] [--only liquids|bodies] [--pbf yes]
-//! [--radius 3,2] [--coarse no,yes] [--peers dfsph,salva,taichi] [--substeps 4x1,3x2]`
+//! [--radius 3,2] [--coarse no,yes] [--peers dfsph,salva,taichi] [--substeps 4x1,3x2]
+//! [--chart FILE.svg] [--pictures FOLDER]`
 
 mod case;
 mod chart;
@@ -96,7 +97,7 @@ fn liquids_table(case: &Case, bars: &mut Vec<(String, f64)>) {
         );
     };
     ours.iter().for_each(|of| row(of, " | ".into()));
-    let mut notes = Vec::new();
+    let (mut notes, mut curves) = (Vec::new(), chart::curves(&ours, case.seconds));
     for peer in peers {
         let peer = match peer {
             Ok(peer) => peer,
@@ -105,6 +106,7 @@ fn liquids_table(case: &Case, bars: &mut Vec<(String, f64)>) {
                 continue;
             }
         };
+        curves.extend(chart::curves(std::slice::from_ref(&peer), case.seconds));
         let error = peer.mean_compression();
         match ours.iter().filter(|of| of.mean_compression() <= error).min_by(|a, b| a.time.total_cmp(&b.time)) {
             Some(of) => {
@@ -114,6 +116,11 @@ fn liquids_table(case: &Case, bars: &mut Vec<(String, f64)>) {
             }
             None => row(&peer, "none | -".into()),
         }
+    }
+    let folder = option("--pictures", "");
+    if !folder.is_empty() {
+        let path = format!("{folder}/peers_{}_{particles}.svg", case.name.replace(' ', "_"));
+        std::fs::write(&path, chart::errors(case, particles, &mut curves)).expect("the picture can be written");
     }
     std::io::stdout().flush().expect("the table can be written");
     println!();

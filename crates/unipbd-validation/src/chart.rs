@@ -27,9 +27,9 @@ const LEFT: f64 = 70.0;
 const RIGHT: f64 = 260.0;
 const TOP: f64 = 40.0;
 const BOTTOM: f64 = 50.0;
-const COLORS: [&str; 13] = [
+const COLORS: [&str; 14] = [
     "#000000", "#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#e377c2", "#ffbb00", "#bcbd22",
-    "#17becf", "#7f7f7f", "#c5b0d5",
+    "#17becf", "#7f7f7f", "#c5b0d5", "#0a7d55",
 ];
 
 /// Draws curves on two logarithmic axes; points on the front of all are filled.
