@@ -12,6 +12,10 @@ use crate::parallel::Parallelism;
 use crate::phase::{MaterialIndex, Phase};
 use std::ops::Range;
 
+mod scratch;
+pub(crate) use scratch::Scratch;
+use scratch::{Buffer, gather};
+
 /// Columns that not every scene has.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OptionalColumns {
@@ -339,36 +343,6 @@ impl Particles {
     }
 }
 
-/// Buffers for reordering columns, one for each element size.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Scratch {
-    vectors: Vec<Vector>,
-    reals: Vec<Real>,
-    ids: Vec<u32>,
-    materials: Vec<MaterialIndex>,
-    phases: Vec<Phase>,
-}
-
-impl Scratch {
-    pub(crate) fn memory_bytes(&self) -> usize {
-        held(&self.vectors) + held(&self.reals) + held(&self.ids) + held(&self.materials) + held(&self.phases)
-    }
-}
-
-/// Finds the buffer of an element type.
-pub(crate) trait Buffer<T> {
-    fn buffer(&mut self) -> &mut Vec<T>;
-}
-
-macro_rules! buffers {
-    ($($type:ty => $field:ident),*) => {
-        $( impl Buffer<$type> for Scratch {
-            fn buffer(&mut self) -> &mut Vec<$type> { &mut self.$field }
-        } )*
-    };
-}
-buffers!(Vector => vectors, Real => reals, u32 => ids, MaterialIndex => materials, Phase => phases);
-
 impl Particles {
     /// Moves a dense row that is to go to the end of its kind, and on into the place before the deep
     /// sleepers; counts it out of those asleep.
@@ -388,24 +362,6 @@ impl Particles {
         }
         hole
     }
-}
-
-fn gather<T: Copy + Send + Sync>(
-    column: &mut Vec<T>,
-    first: usize,
-    order: &[u32],
-    parallelism: Parallelism,
-    buffer: &mut Vec<T>,
-) {
-    if column.is_empty() {
-        return;
-    }
-    // Both buffers grow with the column, so a steady step allocates nothing.
-    buffer.reserve(column.capacity().saturating_sub(buffer.len()));
-    buffer.clear();
-    let rows = &mut column[first..first + order.len()];
-    buffer.extend_from_slice(rows);
-    parallelism.gather(rows, buffer, order);
 }
 
 #[cfg(test)]

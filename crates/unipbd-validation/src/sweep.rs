@@ -80,51 +80,17 @@ enum Scan {
 /// All curves.
 pub const VARIANTS: &[Variant] = &[
     Variant { name: "default, n by target", change: |_| (), scan: Scan::Targets },
-    Variant {
-        name: "h = 3 dx, taken half way",
-        change: |s| at(s, 3.0, GradientPoint::Middle),
-        scan: Scan::Substeps(1),
-    },
-    Variant {
-        name: "h = 2 dx, taken half way",
-        change: |s| at(s, 2.0, GradientPoint::Middle),
-        scan: Scan::Substeps(1),
-    },
-    Variant {
-        name: "h = 2.5 dx, taken half way",
-        change: |s| at(s, 2.5, GradientPoint::Middle),
-        scan: Scan::Substeps(1),
-    },
-    Variant {
-        name: "h = 4 dx, taken half way",
-        change: |s| at(s, 4.0, GradientPoint::Middle),
-        scan: Scan::Substeps(1),
-    },
-    Variant {
-        name: "h = 3 dx, gradients at the prediction",
-        change: |s| at(s, 3.0, GradientPoint::Predicted),
-        scan: Scan::Substeps(1),
-    },
-    Variant {
-        name: "h = 3 dx, gradients at the start",
-        change: |s| at(s, 3.0, GradientPoint::Start),
-        scan: Scan::Substeps(1),
-    },
-    Variant {
-        name: "h = 2 dx, gradients at the prediction",
-        change: |s| at(s, 2.0, GradientPoint::Predicted),
-        scan: Scan::Substeps(1),
-    },
-    Variant {
-        name: "h = 2 dx, gradients at the start",
-        change: |s| at(s, 2.0, GradientPoint::Start),
-        scan: Scan::Substeps(1),
-    },
-    Variant {
-        name: "cubic spline, h = 3 dx",
-        change: |s| (s.kernel, s.kernel_radius) = (KernelKind::CubicSpline, 3.0),
-        scan: Scan::Substeps(1),
-    },
+    Variant::over_substeps("h = 3 dx, taken half way", |s| at(s, 3.0, GradientPoint::Middle)),
+    Variant::over_substeps("h = 2 dx, taken half way", |s| at(s, 2.0, GradientPoint::Middle)),
+    Variant::over_substeps("h = 2.5 dx, taken half way", |s| at(s, 2.5, GradientPoint::Middle)),
+    Variant::over_substeps("h = 4 dx, taken half way", |s| at(s, 4.0, GradientPoint::Middle)),
+    Variant::over_substeps("h = 3 dx, gradients at the prediction", |s| at(s, 3.0, GradientPoint::Predicted)),
+    Variant::over_substeps("h = 3 dx, gradients at the start", |s| at(s, 3.0, GradientPoint::Start)),
+    Variant::over_substeps("h = 2 dx, gradients at the prediction", |s| at(s, 2.0, GradientPoint::Predicted)),
+    Variant::over_substeps("h = 2 dx, gradients at the start", |s| at(s, 2.0, GradientPoint::Start)),
+    Variant::over_substeps("cubic spline, h = 3 dx", |s| {
+        (s.kernel, s.kernel_radius) = (KernelKind::CubicSpline, 3.0);
+    }),
     Variant { name: "h = 3 dx, 2 iterations", change: |s| s.kernel_radius = 3.0, scan: Scan::Substeps(2) },
     Variant { name: "h = 3 dx, 1 substep, K iterations", change: |s| s.kernel_radius = 3.0, scan: Scan::Iterations },
     Variant {
@@ -149,6 +115,11 @@ fn at(settings: &mut SolverSettings, radius: f64, gradients: GradientPoint) {
 }
 
 impl Variant {
+    /// A curve over substeps of one iteration each.
+    const fn over_substeps(name: &'static str, change: fn(&mut SolverSettings)) -> Variant {
+        Variant { name, change, scan: Scan::Substeps(1) }
+    }
+
     /// The settings along the curve.
     fn settings(&self) -> Vec<SolverSettings> {
         let fixed = |substeps: u32, iterations: u32| SolverSettings {

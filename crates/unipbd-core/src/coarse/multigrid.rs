@@ -171,7 +171,7 @@ impl Level {
                 return 0.0;
             }
             let (i, j) = (2 * (i - 1), 2 * (j - 1));
-            // Beyond an odd edge lies the rim, which is empty.
+            // Grids are even: the last cells may lie beyond the finer one, whose rim is empty.
             let at = |i: usize, j: usize| fine.index(i.min(fine.width), j.min(fine.height));
             use_of([at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)])
         };
