@@ -10,6 +10,8 @@ use super::portable::Portable;
 #[cfg(target_arch = "x86_64")]
 use super::x86::{Avx2, Sse2};
 use crate::neighbors::{Chunk, Entries, LANES};
+#[cfg(target_arch = "x86_64")]
+use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
 
 /// The lane form of a pass that sums `N` numbers per row.
 pub(super) trait LanePass<const N: usize>: Pass<N> {
@@ -61,6 +63,33 @@ pub(super) unsafe fn run<P: LanePass<N>, const N: usize>(
         Level::Sse2 => unsafe { run_chunk::<Two<Sse2>, P, N>(pass, chunk, first, rows, sink) },
         // SAFETY: plain arrays run anywhere.
         _ => unsafe { run_chunk::<Two<Portable>, P, N>(pass, chunk, first, rows, sink) },
+    }
+}
+
+/// Bytes of the entries of a chunk that are fetched early; those after them follow by themselves.
+#[cfg(target_arch = "x86_64")]
+const FETCHED_ENTRIES: usize = 512;
+
+/// Asks for the start of a chunk's list. Chunks lie anywhere, so the machine cannot guess where the next one starts.
+pub(super) fn prefetch(chunk: &Chunk) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        let blocks = chunk.blocks();
+        fetch(blocks.as_ptr().cast(), size_of_val(blocks));
+        if let Some(Entries::Narrow(columns)) = blocks.first().map(|block| chunk.entries(block)) {
+            fetch(columns.as_ptr().cast(), FETCHED_ENTRIES);
+        }
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = chunk; // Stable Rust has no way to ask here.
+}
+
+#[cfg(target_arch = "x86_64")]
+fn fetch(from: *const i8, bytes: usize) {
+    const LINE: usize = 64;
+    for offset in (0..bytes).step_by(LINE) {
+        // SAFETY: SSE is in the baseline, and a prefetch may name any address.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(from.wrapping_add(offset)) };
     }
 }
 

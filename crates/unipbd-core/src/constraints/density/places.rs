@@ -46,7 +46,7 @@ impl Places {
         let rows = if fine { now.particles.dense() } else { 0 };
         self.value.resize(rows, Vector::ZERO);
         self.gradient.resize(if self.gradients == GradientPoint::Start { rows } else { 0 }, Vector::ZERO);
-        if fine {
+        if fine && now.particles.listed() > 0 {
             self.find_fine(now);
         }
     }
@@ -60,6 +60,9 @@ impl Places {
         let (positions, velocities) = (now.particles.positions(), now.particles.velocities());
         let (half, farthest) = (0.5 * now.dt, self.farthest_back);
         self.middle.resize(now.particles.dense(), Vector::ZERO);
+        if now.particles.listed() == 0 {
+            return; // All asleep: nobody asks.
+        }
         now.parallelism.fill(&mut self.middle, |row| positions[row] - back(velocities[row], half, farthest));
     }
 

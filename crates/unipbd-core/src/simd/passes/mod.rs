@@ -56,10 +56,13 @@ impl<'a> Pairs<'a> {
         #[cfg(not(feature = "f64"))]
         if self.level != Level::Scalar {
             assert!(pass.shortest_column() >= self.list.reach() && first + rows <= self.rows());
-            let chunk = &self.list.chunks()[first / CHUNK_ROWS];
+            let chunks = &self.list.chunks()[first / CHUNK_ROWS..];
+            if let Some(next) = chunks.get(1) {
+                run::prefetch(next);
+            }
             // SAFETY: the list takes its entries from row numbers below `reach()`, checked when it was
             // built, and its own rows are below that too; every column of the pass has as many rows.
-            unsafe { run::run(self.level, pass, chunk, first, rows, sink) };
+            unsafe { run::run(self.level, pass, &chunks[0], first, rows, sink) };
             return;
         }
         debug_assert_eq!(first % CHUNK_ROWS, 0);
@@ -74,9 +77,10 @@ impl<'a> Pairs<'a> {
         }
     }
 
-    /// Puts the first `rows` rows of two columns side by side for the lane forms; the scalar ones read the columns.
+    /// Puts the first `rows` rows of two columns side by side for the lane forms; the scalar ones read the columns,
+    /// and where all sleep nobody does.
     fn pack<'r>(&self, records: &'r mut Records, rows: usize, record: impl Fn(usize) -> Record + Sync) -> &'r [Record] {
-        if cfg!(feature = "f64") || self.level == Level::Scalar {
+        if cfg!(feature = "f64") || self.level == Level::Scalar || self.rows() == 0 {
             return &[];
         }
         let packed = records.rows_mut(rows);
