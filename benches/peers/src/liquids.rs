@@ -42,7 +42,7 @@ pub fn unipbd(case: &Case, setting: Setting) -> Outcome {
         liquid: vec![Liquid::new("water", 1000.0)],
         block: vec![Block::new("water", [0.0, 0.0], case.block)],
         tank: vec![Tank::new([0.0, 0.0], case.tank)],
-        solver: SolverSettings { coarse_projection: if coarse { 2 } else { 0 }, ..solver },
+        solver: SolverSettings { coarse_projection: if coarse { 3 } else { 0 }, ..solver },
         ..Scene::default()
     };
     let options = BuildOptions { threads: Some(1), ..BuildOptions::default() };

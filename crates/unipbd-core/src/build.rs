@@ -69,8 +69,8 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     let effects = effects(scene, seed);
     let pressure_scale = f64::from(settings.volume) * settings.moment;
     let cover = match settings.gradients {
-        GradientPoint::Start | GradientPoint::Middle => Cover::StartAndPredicted,
         GradientPoint::Predicted => Cover::Predicted,
+        GradientPoint::Start | GradientPoint::Early | GradientPoint::Middle => Cover::StartAndPredicted,
     };
     let least_skin = if effects.is_empty() && scene.smoke.is_empty() { 0.0 } else { LEAST_SKIN * scene.spacing };
     let removal = RemovalRules::new(scene, periodic);
@@ -212,7 +212,7 @@ fn rigid_bodies(scene: &Scene, particles: &mut Particles) -> Option<RigidBodies>
             for &sample in bodies.samples(body) {
                 let place = bodies.pose(body).apply(sample);
                 particles.push(NewParticle {
-                    position: vector(place),
+                    position: place,
                     velocity: vector(bodies.velocity_at(body, place)),
                     inverse_mass,
                     material,
@@ -271,7 +271,7 @@ fn add_points(points: &Points, scene: &Scene, particles: &mut Particles) {
     for (number, &position) in points.positions.iter().enumerate() {
         let velocity = points.velocities.get(number).copied().unwrap_or(points.velocity);
         particles.push(NewParticle {
-            position: vector(position.into()),
+            position: position.into(),
             velocity: vector(velocity.into()),
             inverse_mass: points.motion.inverse_mass(mass),
             material: index as MaterialIndex,
@@ -289,7 +289,7 @@ impl Filling<'_> {
         for &point in &self.points {
             let shift = Vector64::new(rng.signed_unit(), rng.signed_unit()) * (self.jitter * scene.spacing);
             particles.push(NewParticle {
-                position: vector(point + shift),
+                position: point + shift,
                 velocity: vector(self.velocity.into()),
                 inverse_mass: real(1.0 / mass),
                 material: index as MaterialIndex,

@@ -73,7 +73,7 @@ pub enum SubstepReason {
     Fixed,
     /// The fastest particle or emitter (Courant-Friedrichs-Lewy).
     Speed,
-    /// The pressure, so that no substep compresses by more than a fifth.
+    /// The pressure, so that no substep compresses by more than an eighth.
     TrustRegion,
     /// The pressure and the target of the scene for the largest compression.
     Compression,

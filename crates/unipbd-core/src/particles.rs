@@ -7,7 +7,7 @@
 //! nothing between two steps: the id does.
 
 use crate::bytes::{Damage, Reader, Writer, held};
-use crate::math::{Real, Vector};
+use crate::math::{Real, Vector, Vector64, vector, wide};
 use crate::parallel::Parallelism;
 use crate::phase::{MaterialIndex, Phase};
 use std::ops::Range;
@@ -30,8 +30,8 @@ pub struct OptionalColumns {
 /// A particle about to be added.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewParticle {
-    /// Position [m].
-    pub position: Vector,
+    /// Position [m]; what rounding takes from it is kept.
+    pub position: Vector64,
     /// Velocity [m/s].
     pub velocity: Vector,
     /// Inverse mass [1/kg]; 0 for a particle moved by a script.
@@ -291,10 +291,11 @@ impl Particles {
     pub(crate) fn push(&mut self, new: NewParticle) -> u32 {
         let id = self.next_id;
         self.next_id += 1;
-        self.position.push(new.position);
-        self.start.push(new.position);
+        let position = vector(new.position);
+        self.position.push(position);
+        self.start.push(position);
         self.displacement.push(if new.phase.is_passive() { new.velocity } else { Vector::ZERO });
-        self.remainder.push(Vector::ZERO);
+        self.remainder.push(if new.phase.is_passive() { Vector::ZERO } else { vector(new.position - wide(position)) });
         self.velocity.push(new.velocity);
         self.inverse_mass.push(new.inverse_mass);
         self.density_error.push(0.0);
@@ -309,7 +310,7 @@ impl Particles {
             self.age.push(0.0);
         }
         if self.optional.rest {
-            self.anchor.push(new.position);
+            self.anchor.push(position);
             self.rest.push(0.0);
         }
         if !self.acceleration.is_empty() {
@@ -370,7 +371,7 @@ mod tests {
 
     fn particle(phase: Phase, x: Real) -> NewParticle {
         NewParticle {
-            position: Vector::new(x, 0.0),
+            position: Vector64::new(f64::from(x), 0.0),
             velocity: Vector::ZERO,
             inverse_mass: 1.0,
             material: 0,

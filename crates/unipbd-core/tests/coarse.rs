@@ -6,7 +6,7 @@ use unipbd_core::{BuildOptions, Solver};
 const GRAVITY: f64 = 9.81;
 
 fn coarse() -> SolverSettings {
-    SolverSettings { coarse_projection: 2, ..SolverSettings::default() }
+    SolverSettings { coarse_projection: 3, ..SolverSettings::default() }
 }
 
 /// Water of this width and depth in the left of a tank of this width [m], at 10 particles per metre.

@@ -76,7 +76,7 @@ fn a_pool_steps_without_allocating() {
 
 #[test]
 fn a_pool_with_a_coarse_projection_steps_without_allocating() {
-    let scene = Scene { solver: SolverSettings { coarse_projection: 2, ..fixed(4) }, ..pool() };
+    let scene = Scene { solver: SolverSettings { coarse_projection: 3, ..fixed(4) }, ..pool() };
     assert_eq!(allocations(&scene, 60, 20), 0);
 }
 

@@ -115,9 +115,10 @@ fn set(solver: &mut SolverSettings, key: &str, value: &str) -> Result<(), Box<dy
         "gradients" => {
             solver.gradients = Some(match value {
                 "start" => GradientPoint::Start,
+                "early" => GradientPoint::Early,
                 "middle" => GradientPoint::Middle,
                 "predicted" => GradientPoint::Predicted,
-                _ => return Err("gradients are start, middle or predicted".into()),
+                _ => return Err("gradients are start, early, middle or predicted".into()),
             });
         }
         "kernel" => {

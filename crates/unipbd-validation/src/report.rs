@@ -36,7 +36,7 @@ impl Entry {
 
     /// Runs one entry with a coarse projection.
     pub fn run_coarse(case: &'static Case, resolution: u32, target: f64) -> Entry {
-        let settings = SolverSettings { coarse_projection: 2, ..settings(target) };
+        let settings = SolverSettings { coarse_projection: 3, ..settings(target) };
         Entry { case, resolution, target, coarse: true, result: case.run(resolution, &settings) }
     }
 

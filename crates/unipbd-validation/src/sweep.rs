@@ -80,10 +80,11 @@ enum Scan {
 /// All curves.
 pub const VARIANTS: &[Variant] = &[
     Variant { name: "default, n by target", change: |_| (), scan: Scan::Targets },
+    Variant::over_substeps("h = 3 dx, taken early", |s| at(s, 3.0, GradientPoint::Early)),
+    Variant::over_substeps("h = 2 dx, taken early", |s| at(s, 2.0, GradientPoint::Early)),
+    Variant::over_substeps("h = 2.5 dx, taken early", |s| at(s, 2.5, GradientPoint::Early)),
+    Variant::over_substeps("h = 4 dx, taken early", |s| at(s, 4.0, GradientPoint::Early)),
     Variant::over_substeps("h = 3 dx, taken half way", |s| at(s, 3.0, GradientPoint::Middle)),
-    Variant::over_substeps("h = 2 dx, taken half way", |s| at(s, 2.0, GradientPoint::Middle)),
-    Variant::over_substeps("h = 2.5 dx, taken half way", |s| at(s, 2.5, GradientPoint::Middle)),
-    Variant::over_substeps("h = 4 dx, taken half way", |s| at(s, 4.0, GradientPoint::Middle)),
     Variant::over_substeps("h = 3 dx, gradients at the prediction", |s| at(s, 3.0, GradientPoint::Predicted)),
     Variant::over_substeps("h = 3 dx, gradients at the start", |s| at(s, 3.0, GradientPoint::Start)),
     Variant::over_substeps("h = 2 dx, gradients at the prediction", |s| at(s, 2.0, GradientPoint::Predicted)),
@@ -103,7 +104,7 @@ pub const VARIANTS: &[Variant] = &[
         },
         scan: Scan::Iterations,
     },
-    Variant { name: COARSE, change: |s| s.coarse_projection = 2, scan: Scan::Targets },
+    Variant { name: COARSE, change: |s| s.coarse_projection = 3, scan: Scan::Targets },
 ];
 
 /// Drawn, but not judged: it carries one liquid in static walls alone, and is no choice for all of these cases.

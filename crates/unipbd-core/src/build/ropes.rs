@@ -32,7 +32,7 @@ impl Ropes {
         let mut point = |number: usize| {
             let fixed = number == 0 && held[0] || number == pieces && held[1];
             particles.push(NewParticle {
-                position: vector(from + (to - from) * (number as f64 / pieces as f64)),
+                position: from + (to - from) * (number as f64 / pieces as f64),
                 velocity: vector(Vector64::ZERO),
                 inverse_mass: if fixed { 0.0 } else { inverse_mass },
                 material: index as MaterialIndex,

@@ -69,6 +69,8 @@ pub struct Substep<'a> {
     pub time: f64,
     /// Largest pressure over density that a fluid may push with [m^2/s^2].
     pub pressure_limit: Real,
+    /// Part of their stiffness that fluids have, 0 to 1.
+    pub stiffness: Real,
     /// The particles, at their predicted or projected positions.
     pub particles: &'a Particles,
     /// Rows by id; kept only where a group [needs](Needs::ROWS) it.

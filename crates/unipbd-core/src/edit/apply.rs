@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use super::check::Checker;
 use super::{Change, Edit, EditError, Points, Values};
-use crate::math::{Vector, real, vector};
+use crate::math::{Vector, real, vector, wide};
 use crate::particles::NewParticle;
 use crate::phase::MaterialIndex;
 use crate::rows::RowIndex;
@@ -104,7 +104,7 @@ impl Solver {
         for (number, &position) in points.positions.iter().enumerate() {
             let velocity = points.velocities.get(number).copied().unwrap_or(points.velocity);
             parts.particles.push(NewParticle {
-                position: periodic.wrap(vector(position)),
+                position: wide(periodic.wrap(vector(position))),
                 velocity: vector(velocity),
                 inverse_mass: points.motion.inverse_mass(mass),
                 material: index as MaterialIndex,

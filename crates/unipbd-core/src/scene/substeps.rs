@@ -9,16 +9,16 @@ const COARSE_COURANT: f64 = 0.8;
 /// ...within these limits.
 const COARSE_COURANT_RANGE: [f64; 2] = [0.2, 1.6];
 
-/// How many times the way that pressure pushes in a frame must be cut for the trust region.
-const TRUST: f64 = 2.0;
-
 /// The law that the solver's choice and the estimate of a scene follow alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SubstepLaw {
     spacing: f64,
     target: f64,
     courant: f64,
-    trust: f64,
+    /// Whether particles alone hold the pressure.
+    alone: bool,
+    /// Whether all fluids have a surface.
+    free: bool,
     /// D/omega of the law C_max = (D/omega) P dt^2/dx^2.
     compressibility: f64,
 }
@@ -26,24 +26,32 @@ pub(crate) struct SubstepLaw {
 impl SubstepLaw {
     pub fn new(scene: &Scene) -> Self {
         let (spacing, target) = (scene.spacing, scene.solver.target_compression);
+        let free = !scene.materials().any(|material| material.phase().is_fluid() && material.is_two_sided());
         if scene.solver.coarse_projection > 0 {
             // The grid holds the pressure; the particles only what is left of it.
             let [least, most] = COARSE_COURANT_RANGE;
             let courant = (COARSE_COURANT * (target / 0.01).sqrt()).clamp(least, most);
-            return SubstepLaw { spacing, target, courant, trust: 0.0, compressibility: 0.0 };
+            return SubstepLaw { spacing, target, courant, alone: false, free, compressibility: 0.0 };
         }
         let compressibility = scene.solver.compressibility(scene.gradients());
-        SubstepLaw { spacing, target, courant: COURANT, trust: TRUST, compressibility }
+        SubstepLaw { spacing, target, courant: COURANT, alone: true, free, compressibility }
     }
 
-    /// Substeps of a frame of this length [s] by speed [m/s] (CFL), by the trust region (the compression
-    /// within one substep stays below 0.2), and by the target compression at this pressure over density
-    /// [m^2/s^2].
+    /// Whether the compression of its particles is what carries a fluid that can expand: then it stores energy.
+    pub fn stores_energy(&self) -> bool {
+        self.alone && self.free
+    }
+
+    /// Substeps of a frame of this length [s] by speed [m/s] (CFL), by the trust region (the same for the speed that
+    /// this pressure over density [m^2/s^2] may still bring about: the compression within one substep stays below
+    /// an eighth), and by the target compression at this pressure.
     pub fn wanted(&self, frame: f64, speed: f64, pressure: f64) -> [f64; 3] {
         let root = (pressure / self.target * self.compressibility).sqrt();
+        // The fastest and the most pressed are seldom one, so not the 2 P of Bernoulli.
+        let trusted = if self.alone { (speed * speed + pressure).sqrt() } else { 0.0 };
         [
             frame * speed / (self.courant * self.spacing),
-            self.trust * frame * pressure.sqrt() / self.spacing,
+            frame * trusted / (self.courant * self.spacing),
             frame / self.spacing * root,
         ]
     }

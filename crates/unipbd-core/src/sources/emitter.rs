@@ -5,7 +5,7 @@
 //! three spacings behind. (Points set free at random press on each other ten times harder.)
 
 use super::injector::RegionInjector;
-use crate::math::{Real, Vector, Vector64, real, vector};
+use crate::math::{Real, Vector, Vector64, real, vector, wide};
 use crate::neighbors::Neighbors;
 use crate::particles::{NewParticle, Particles};
 use crate::phase::{MaterialIndex, Phase};
@@ -266,7 +266,7 @@ impl Nozzle {
         let place = self.position + self.direction.perp() * offset - self.direction * (distance * self.spacing)
             + shift * self.spacing;
         particles.push(NewParticle {
-            position: vector(place),
+            position: place,
             velocity: vector(self.direction * (speed * self.state.throttle())),
             inverse_mass: 0.0,
             material: self.carrier.material,
@@ -283,7 +283,7 @@ impl Nozzle {
         for _ in 0..count {
             let shift = self.random_vector() * (0.5 * self.spacing);
             particles.push(NewParticle {
-                position: position + vector(shift),
+                position: wide(position + vector(shift)),
                 velocity,
                 inverse_mass: 0.0,
                 material,

@@ -1,6 +1,6 @@
 //! Injectors: particles at random places of a region.
 
-use crate::math::{Real, Vector, Vector64, real, vector};
+use crate::math::{Real, Vector, Vector64, real, vector, wide};
 use crate::neighbors::Neighbors;
 use crate::particles::{NewParticle, Particles};
 use crate::phase::{MaterialIndex, Phase};
@@ -83,7 +83,7 @@ impl RegionInjector {
                 continue;
             }
             particles.push(NewParticle {
-                position,
+                position: wide(position),
                 velocity: self.velocity,
                 inverse_mass: self.inverse_mass,
                 material: self.material,

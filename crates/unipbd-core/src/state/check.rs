@@ -12,6 +12,9 @@ impl State {
         if ![clock.time, clock.dt, clock.speed].into_iter().all(|value| value.is_finite() && value >= 0.0) {
             return Err(damaged("its clock is not a finite time"));
         }
+        if !(0.0..=1.0).contains(&clock.stiffness) {
+            return Err(damaged("the stiffness of its fluids is not between 0 and 1"));
+        }
         if clock.done > clock.substeps {
             return Err(damaged("it has done more substeps than its frame has"));
         }

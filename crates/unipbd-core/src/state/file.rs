@@ -10,7 +10,7 @@ use crate::step::Clock;
 
 const MAGIC: &[u8; 8] = b"unipbd\0S";
 /// Goes up with every change of what follows.
-const VERSION: u32 = 4;
+const VERSION: u32 = 5;
 const CHECKSUM_BYTES: usize = 8;
 
 impl State {
@@ -75,7 +75,7 @@ fn write_clock(clock: &Clock, out: &mut Writer) {
     for count in [clock.substeps, clock.done, clock.list_builds, u32::from(clock.capped)] {
         out.value(count);
     }
-    for value in [clock.time, clock.dt, clock.speed, clock.pressure_limit] {
+    for value in [clock.time, clock.dt, clock.speed, clock.pressure_limit, clock.stiffness] {
         out.value(value);
     }
 }
@@ -93,6 +93,7 @@ fn read_clock(input: &mut Reader<'_>) -> Result<Clock, Damage> {
         dt: input.value()?,
         speed: input.value()?,
         pressure_limit: input.value()?,
+        stiffness: input.value()?,
     })
 }
 

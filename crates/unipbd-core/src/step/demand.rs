@@ -18,7 +18,9 @@ const LEAST_SPEED: f64 = 2.0;
 impl World {
     pub(super) fn choose_substeps(&mut self) -> u32 {
         let demand = self.demand();
-        let choice = self.parts.substeps.choose_after(self.clock.substeps, self.parts.frame_time, demand);
+        let (rule, last, frame) = (self.parts.substeps, self.clock.substeps, self.parts.frame_time);
+        let choice = rule.choose_after(last, frame, demand);
+        self.clock.stiffness = rule.stiffness_after(last, self.clock.stiffness, frame, demand, choice.substeps);
         let capped = choice.wanted > choice.substeps;
         if capped && !self.clock.capped {
             let message = format!(

@@ -75,6 +75,8 @@ pub(crate) struct Clock {
     pub list_builds: u32,
     /// Largest pressure over density that a fluid may push with [m^2/s^2].
     pub pressure_limit: f64,
+    /// Part of their stiffness that fluids have.
+    pub stiffness: f64,
     /// Whether the last frame was denied substeps.
     pub capped: bool,
     /// Fastest dense particle after the last substep [m/s].
@@ -302,6 +304,7 @@ impl World {
         let substeps = substeps.unwrap_or_else(|| self.settling());
         self.clock.dt = self.parts.frame_time;
         self.clock.pressure_limit = self.pressure_limit();
+        self.clock.stiffness = 1.0;
         if self.parts.particles.dense() > 0 {
             // Once nothing moves any more, nothing will.
             let still = SETTLED * self.parts.spacing;
@@ -327,6 +330,7 @@ impl World {
             dt: clock.dt as Real,
             time: clock.time,
             pressure_limit: clock.pressure_limit as Real,
+            stiffness: clock.stiffness as Real,
             particles: &parts.particles,
             rows,
             neighbors: &parts.neighbors,

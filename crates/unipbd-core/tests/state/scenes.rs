@@ -102,7 +102,7 @@ pub fn bodies() -> Scene {
 
 /// The same column with a coarse projection.
 pub fn coarse() -> Scene {
-    let solver = SolverSettings { coarse_projection: 2, substeps: Substeps::Fixed(4), ..SolverSettings::default() };
+    let solver = SolverSettings { coarse_projection: 3, substeps: Substeps::Fixed(4), ..SolverSettings::default() };
     Scene { solver, ..liquid() }
 }
 

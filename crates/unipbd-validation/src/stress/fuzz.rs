@@ -127,7 +127,7 @@ pub fn random_scene(seed: u64) -> Scene {
 
 /// The scene with a coarse projection, if that can carry it. Nothing is drawn: all others stay what they were.
 fn with_coarse_projection(scene: Scene) -> Scene {
-    let solver = SolverSettings { coarse_projection: 2, ..scene.solver.clone() };
+    let solver = SolverSettings { coarse_projection: 3, ..scene.solver.clone() };
     let coarse = Scene { solver, ..scene.clone() };
     if coarse.validate().0.is_empty() { coarse } else { scene }
 }

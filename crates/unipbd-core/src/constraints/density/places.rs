@@ -9,19 +9,22 @@ use std::ops::Range;
 
 /// Farther than this many spacings from the origin f32 keeps too few digits of a position for kernels.
 const FAR: Real = 4096.0;
-/// Half way is at most this many spacings behind the prediction: half of what the Courant condition lets a particle go.
-/// One that is too fast for its substeps is stopped by walls and others, and was never half way back along its velocity.
-const FARTHEST_BACK: Real = 0.2;
+/// Behind the prediction means a part of the way of the substep, but of no more of it than this [spacings]: what the
+/// Courant condition lets a particle go.
+/// One that is too fast for its substeps is stopped by walls and others, and was never that far back along its velocity.
+const LONGEST_WAY: Real = 0.4;
 
 /// The positions that a density iteration works with.
 pub(super) struct Places {
     gradients: GradientPoint,
     /// [`FAR`] in metres.
     far: Real,
-    /// [`FARTHEST_BACK`] in metres.
-    farthest_back: Real,
-    /// Half way between start and prediction, where the constraint is taken there.
-    middle: Vec<Vector>,
+    /// How far behind the prediction the constraint is taken, as a part of the way of the substep.
+    behind: Real,
+    /// [`LONGEST_WAY`] in metres.
+    longest_way: Real,
+    /// The positions there, if it is.
+    earlier: Vec<Vector>,
     /// Far from the origin: positions from the middle of the domain, with the digits that rounding kept out
     /// of them, where the density is taken...
     value: Vec<Vector>,
@@ -31,17 +34,18 @@ pub(super) struct Places {
 
 impl Places {
     pub fn new(gradients: GradientPoint, spacing: f64) -> Places {
-        let (far, farthest_back) = (FAR * real(spacing), FARTHEST_BACK * real(spacing));
-        Places { gradients, far, farthest_back, middle: Vec::new(), value: Vec::new(), gradient: Vec::new() }
+        let behind = real(gradients.behind().unwrap_or(0.0));
+        let (far, longest_way) = (FAR * real(spacing), LONGEST_WAY * real(spacing));
+        Places { gradients, far, behind, longest_way, earlier: Vec::new(), value: Vec::new(), gradient: Vec::new() }
     }
 
     pub fn memory_bytes(&self) -> usize {
-        held(&self.middle) + held(&self.value) + held(&self.gradient)
+        held(&self.earlier) + held(&self.value) + held(&self.gradient)
     }
 
     /// Finds the places of an iteration.
     pub fn find(&mut self, now: Substep<'_>) {
-        self.find_middle(now);
+        self.find_earlier(now);
         let fine = self.is_far(now.particles);
         let rows = if fine { now.particles.dense() } else { 0 };
         self.value.resize(rows, Vector::ZERO);
@@ -51,19 +55,20 @@ impl Places {
         }
     }
 
-    /// x - dt v/2, where the constraint is taken half way: it lets a wave pass with half the damping
-    /// (the iteration is stable for omega lambda < 2 instead of 4/3).
-    fn find_middle(&mut self, now: Substep<'_>) {
-        if self.gradients != GradientPoint::Middle {
+    /// x - b dt v, where the constraint is taken behind the prediction: it lets a wave pass with 1 - b of the damping
+    /// (the iteration is stable for omega lambda < 4/(3 - 2 b)).
+    fn find_earlier(&mut self, now: Substep<'_>) {
+        if self.behind == 0.0 {
             return;
         }
         let (positions, velocities) = (now.particles.positions(), now.particles.velocities());
-        let (half, farthest) = (0.5 * now.dt, self.farthest_back);
-        self.middle.resize(now.particles.dense(), Vector::ZERO);
+        let (behind, longest) = (self.behind, self.longest_way);
+        self.earlier.resize(now.particles.dense(), Vector::ZERO);
         if now.particles.listed() == 0 {
             return; // All asleep: nobody asks.
         }
-        now.parallelism.fill(&mut self.middle, |row| positions[row] - back(velocities[row], half, farthest));
+        now.parallelism
+            .fill(&mut self.earlier, |row| positions[row] - at_most(velocities[row] * now.dt, longest) * behind);
     }
 
     /// Rows are in the order of cells: where all are far from the origin, the first and the last one are.
@@ -79,10 +84,10 @@ impl Places {
         let (starts, displacements) = (particles.starts(), &particles.displacement);
         let (remainders, velocities) = (&particles.remainder, particles.velocities());
         let origin = middle_of(now, starts);
-        let half = if self.gradients == GradientPoint::Middle { 0.5 * now.dt } else { 0.0 };
-        let farthest = self.farthest_back;
+        let (behind, longest) = (self.behind, self.longest_way);
         now.parallelism.fill(&mut self.value, |row| {
-            (starts[row] - origin) + (displacements[row] + remainders[row]) - back(velocities[row], half, farthest)
+            let back = at_most(velocities[row] * now.dt, longest) * behind;
+            (starts[row] - origin) + (displacements[row] + remainders[row]) - back
         });
         now.parallelism.fill(&mut self.gradient, |row| (starts[row] - origin) + remainders[row]);
     }
@@ -98,10 +103,7 @@ impl Places {
 
     /// Positions at which the density is taken.
     pub fn values<'a>(&'a self, now: Substep<'a>) -> &'a [Vector] {
-        match self.gradients {
-            GradientPoint::Predicted | GradientPoint::Start => now.particles.positions(),
-            GradientPoint::Middle => &self.middle,
-        }
+        if self.behind == 0.0 { now.particles.positions() } else { &self.earlier }
     }
 
     /// Positions at which gradients are taken, if elsewhere.
@@ -130,11 +132,10 @@ impl Places {
     }
 }
 
-/// The way back over this time [s], no longer than `farthest` [m].
+/// A way, no longer than `longest`.
 #[inline]
-fn back(velocity: Vector, time: Real, farthest: Real) -> Vector {
-    let way = velocity * time;
-    let square = farthest * farthest;
+fn at_most(way: Vector, longest: Real) -> Vector {
+    let square = longest * longest;
     way * (square / larger(way.length_squared(), square)).sqrt()
 }
 

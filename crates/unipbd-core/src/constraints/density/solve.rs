@@ -39,8 +39,12 @@ impl Density {
             positions: self.places.values(now),
             gradient_positions: self.places.other_gradients(now),
         };
-        let terms =
-            Terms { volume, own: self.kernel.value(0.0) * volume - 1.0, limit: now.pressure_limit * now.dt * now.dt };
+        let terms = Terms {
+            volume,
+            own: self.kernel.value(0.0) * volume - 1.0,
+            stiffness: now.stiffness,
+            limit: now.pressure_limit * now.dt * now.dt,
+        };
         let (sums, materials) = (&self.sums, &self.settings.materials);
         let (inverse_mass, material_of) = (now.particles.inverse_masses(), now.particles.materials());
         let (error, wall, step, multiplier) =
@@ -297,6 +301,8 @@ struct Terms {
     volume: Real,
     /// What a row itself adds to its density error, less the rest density.
     own: Real,
+    /// Part of the relaxation that counts.
+    stiffness: Real,
     /// Largest pressure over density times dt^2 [m^2].
     limit: Real,
 }
@@ -317,7 +323,7 @@ struct Relaxed<'a> {
 impl Relaxed<'_> {
     #[inline(always)]
     fn relax(&mut self, terms: Terms, material: impl Fn(usize) -> DensityMaterial) {
-        let Terms { volume, own, limit } = terms;
+        let Terms { volume, own, stiffness, limit } = terms;
         let rows = self.error.len();
         let (value, gradient, response) = (&self.value[..rows], &self.gradient[..rows], &self.response[..rows]);
         let (inverse_mass, wall) = (&self.inverse_mass[..rows], &self.wall[..rows]);
@@ -326,7 +332,7 @@ impl Relaxed<'_> {
             error[k] += volume * value[k] + own;
             let gradient = gradient[k] * volume + wall[k];
             let response = inverse_mass[k] * gradient.length_squared() + volume * volume * response[k];
-            let new = material(k).multiplier(multiplier[k], error[k], response, inverse_mass[k], limit);
+            let new = material(k).multiplier(multiplier[k], error[k], response, inverse_mass[k], stiffness, limit);
             step[k] = new - multiplier[k];
             multiplier[k] = new;
         }
@@ -344,13 +350,21 @@ fn at_most(step: Vector, length: Real) -> Vector {
 impl DensityMaterial {
     /// The multiplier after one relaxed step. `limit` is the largest pressure over density times dt^2.
     #[inline(always)]
-    fn multiplier(&self, old: Real, error: Real, response: Real, inverse_mass: Real, limit: Real) -> Real {
+    fn multiplier(
+        &self,
+        old: Real,
+        error: Real,
+        response: Real,
+        inverse_mass: Real,
+        stiffness: Real,
+        limit: Real,
+    ) -> Real {
         // A particle moved by a script may push, never pull: its own response is missing from the
         // denominator.
         let scripted = inverse_mass == 0.0;
         let least = if scripted { 0.0 } else { self.multiplier_min };
         let floor = if scripted { self.scripted_response_min } else { self.response_min };
-        let new = old + self.relaxation * error / (larger(response, floor) + self.mixing);
+        let new = old + stiffness * self.relaxation * error / (larger(response, floor) + self.mixing);
         // What is squeezed in with no way out must not push harder the shorter the substep is.
         let limit = limit * self.mass;
         let new = smaller(larger(larger(new, least), -limit), limit);
