@@ -9,7 +9,9 @@ pub struct Point {
     pub x: f64,
     /// Error.
     pub y: f64,
-    /// Whether nothing else is both cheaper and better.
+    /// Whether it is judged; otherwise it is only drawn.
+    pub counts: bool,
+    /// Whether nothing else that counts is both cheaper and better.
     pub best: bool,
 }
 
@@ -27,9 +29,9 @@ const LEFT: f64 = 70.0;
 const RIGHT: f64 = 260.0;
 const TOP: f64 = 40.0;
 const BOTTOM: f64 = 50.0;
-const COLORS: [&str; 14] = [
+const COLORS: [&str; 15] = [
     "#000000", "#1f77b4", "#ff7f0e", "#2ca02c", "#d62728", "#9467bd", "#8c564b", "#e377c2", "#ffbb00", "#bcbd22",
-    "#17becf", "#7f7f7f", "#c5b0d5", "#0a7d55",
+    "#17becf", "#7f7f7f", "#c5b0d5", "#aec7e8", "#0a7d55",
 ];
 
 /// Draws curves on two logarithmic axes; points on the front of all are filled.
@@ -101,13 +103,14 @@ fn text(svg: &mut String, at: (f64, f64), anchor: &str, text: &str) {
 /// Marks the points that no other point beats: by more than this part, the scatter of the measurement, in cost or in
 /// error, while it is no worse in the other.
 pub fn mark_front(curves: &mut [Curve], scatter: f64) {
-    let all: Vec<(f64, f64)> = curves.iter().flat_map(|curve| &curve.points).map(|point| (point.x, point.y)).collect();
+    let counted = curves.iter().flat_map(|curve| &curve.points).filter(|point| point.counts);
+    let all: Vec<(f64, f64)> = counted.map(|point| (point.x, point.y)).collect();
     let beaten = |p: &Point| {
         let (cheap, exact) = (p.x * (1.0 - scatter), p.y * (1.0 - scatter));
         all.iter().any(|&(x, y)| x <= p.x && y <= p.y && (x < cheap || y < exact))
     };
     for point in curves.iter_mut().flat_map(|curve| &mut curve.points) {
-        point.best = point.y.is_finite() && !beaten(point);
+        point.best = point.counts && point.y.is_finite() && !beaten(point);
     }
 }
 
@@ -117,7 +120,7 @@ mod tests {
 
     #[test]
     fn the_front_holds_what_nothing_beats_in_both() {
-        let point = |x, y| Point { x, y, best: false };
+        let point = |x, y| Point { x, y, counts: true, best: false };
         let mut curves = vec![
             Curve { name: "a".into(), points: vec![point(1.0, 4.0), point(2.0, 2.0)] },
             Curve { name: "b".into(), points: vec![point(2.0, 3.0), point(4.0, 1.0), point(5.0, f64::NAN)] },
@@ -131,11 +134,19 @@ mod tests {
 
     #[test]
     fn points_within_the_scatter_of_the_front_count_as_on_it() {
-        let point = |x, y| Point { x, y, best: false };
+        let point = |x, y| Point { x, y, counts: true, best: false };
         let mut curves =
             [Curve { name: "a".into(), points: vec![point(1.0, 1.0), point(1.05, 1.05), point(1.2, 1.05)] }];
         mark_front(&mut curves, 0.1);
         assert_eq!(curves[0].points.iter().map(|p| p.best).collect::<Vec<_>>(), [true, true, false]);
+    }
+
+    #[test]
+    fn points_that_do_not_count_beat_nobody() {
+        let point = |x, counts| Point { x, y: 1.0, counts, best: false };
+        let mut curves = [Curve { name: "a".into(), points: vec![point(1.0, false), point(2.0, true), point(3.0, true)] }];
+        mark_front(&mut curves, 0.1);
+        assert_eq!(curves[0].points.iter().map(|p| p.best).collect::<Vec<_>>(), [false, true, false]);
     }
 
     #[test]

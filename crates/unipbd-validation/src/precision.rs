@@ -195,8 +195,9 @@ pub fn section(single: &[Reading], double: &[Reading]) -> String {
          its change over the sum of m |v| at the start, angular momentum likewise; energy is its change from start to \
          end. The spacing is 1/8 m, so that walls and lattices lie at the same places in both.\n\n\
          At 1e5 dx a position in f32 is rounded to 0.008 dx. From 4096 dx on the density is therefore summed over \
-         positions from the middle of all particles, with the digits that rounding keeps out of the columns: without that \
-         mean C was 3 % lower at 1e5 dx and that of the drops 12 %. Walls still see the rounded positions. The angular \
+         positions from the middle of all particles, with the digits that rounding keeps out of the columns, from the first \
+         places on: without that mean C was 3 % lower at 1e5 dx and that of the drops 12 %. Two tanks far apart have no \
+         middle that is near both. Walls still see the rounded positions. The angular \
          momentum changes alike in both, with the length of a substep: forces act along the lines between predicted \
          positions.\n\n\
          | scene | mean C, f32 | f64 | f32 over f64 | momentum, f32 | f64 | angular, f32 | f64 | energy, f32 | f64 |\n\

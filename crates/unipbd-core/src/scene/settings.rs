@@ -25,7 +25,7 @@ pub struct SolverSettings {
     /// Kernel radius h in spacings.
     pub kernel_radius: f64,
     /// Where the density constraint is evaluated; left out, `start` where any fluid resists dilation too (gas,
-    /// `surface = "none"`), `predicted` beside bodies and after a coarse projection, else `middle`.
+    /// `surface = "none"`), `predicted` beside bodies and after a coarse projection, else `early`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gradients: Option<GradientPoint>,
     /// Relaxation of the density iteration, omega; left out, what is stable with the kernel radius and `gradients`.

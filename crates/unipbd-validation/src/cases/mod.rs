@@ -8,7 +8,7 @@ mod layers;
 mod pool;
 mod wave;
 
-pub use pool::{DENSITY_ERROR, LEVEL, SUBSTEPS_PER_FRAME};
+pub use pool::{DENSITY_ERROR, LEVEL, SUBSTEPS_PER_FRAME, WORST};
 
 use crate::case::Case;
 
