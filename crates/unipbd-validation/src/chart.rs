@@ -144,7 +144,8 @@ mod tests {
     #[test]
     fn points_that_do_not_count_beat_nobody() {
         let point = |x, counts| Point { x, y: 1.0, counts, best: false };
-        let mut curves = [Curve { name: "a".into(), points: vec![point(1.0, false), point(2.0, true), point(3.0, true)] }];
+        let mut curves =
+            [Curve { name: "a".into(), points: vec![point(1.0, false), point(2.0, true), point(3.0, true)] }];
         mark_front(&mut curves, 0.1);
         assert_eq!(curves[0].points.iter().map(|p| p.best).collect::<Vec<_>>(), [false, true, false]);
     }

@@ -14,22 +14,21 @@ use crate::report::{Console, Form};
 use crate::scene_file::LoadedScene;
 use crate::simulation::{Simulation, title};
 
+/// Frames in a row of one number of threads: a pool that waits for the others between any two is not what users see.
+const ROUND: u64 = 10;
+
 pub(super) fn bench(arguments: &BenchArgs, console: Console) -> Result<Exit, Failure> {
     let loaded = load(&arguments.scene, &arguments.changes)?;
     interrupt::listen();
     let threads = thread_counts(&arguments.threads);
     let mut runs = threads.iter().map(|&threads| Timed::new(&loaded, threads)).collect::<Result<Vec<_>, _>>()?;
     let frames = arguments.frames;
-    for frame in 0..arguments.warm_up + frames {
-        if interrupt::requested() {
-            return Ok(Exit::Interrupted);
-        }
-        if frame == arguments.warm_up {
-            runs.iter_mut().for_each(Timed::start);
-        }
-        for run in &mut runs {
-            run.frame().map_err(|error| Failure::new(Exit::Diverged, error.to_string()))?;
-        }
+    if !step_in_rounds(&mut runs, arguments.warm_up)? {
+        return Ok(Exit::Interrupted);
+    }
+    runs.iter_mut().for_each(Timed::start);
+    if !step_in_rounds(&mut runs, frames)? {
+        return Ok(Exit::Interrupted);
     }
     let results: Vec<Measured> = runs.iter().map(Timed::measured).collect();
     match console.form {
@@ -41,6 +40,21 @@ pub(super) fn bench(arguments: &BenchArgs, console: Console) -> Result<Exit, Fai
         Form::Text => console.line(text(&title(&loaded.scene, &loaded.path), frames, &results))?,
     }
     Ok(Exit::Success)
+}
+
+/// Steps all runs by so many frames, in turn; false if interrupted.
+fn step_in_rounds(runs: &mut [Timed], frames: u64) -> Result<bool, Failure> {
+    for begun in (0..frames).step_by(ROUND as usize) {
+        for run in &mut *runs {
+            for _ in begun..frames.min(begun + ROUND) {
+                if interrupt::requested() {
+                    return Ok(false);
+                }
+                run.frame().map_err(|error| Failure::new(Exit::Diverged, error.to_string()))?;
+            }
+        }
+    }
+    Ok(true)
 }
 
 /// The numbers asked for, each once; otherwise 1 and all there are.

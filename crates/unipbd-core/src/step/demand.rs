@@ -1,8 +1,9 @@
 //! What a frame demands of its substeps, and what pressure is believed, from the state alone.
 
 use super::substeps::Demand;
+use super::survey::Survey;
 use super::world::World;
-use crate::math::{Real, Vector, Vector64, wide};
+use crate::math::{Vector, wide};
 use crate::observe::{Event, Severity};
 use crate::phase::Phase;
 
@@ -16,8 +17,12 @@ const UNEXPECTED: f64 = 3.0;
 const LEAST_SPEED: f64 = 2.0;
 
 impl World {
+    /// Decides the substeps of a frame, the stiffness and the pressure that is believed in it.
     pub(super) fn choose_substeps(&mut self) -> u32 {
-        let demand = self.demand();
+        let liquids = self.survey(self.down(), is_liquid);
+        let fluids = if self.has_gas() { self.survey(self.down(), Phase::is_fluid) } else { liquids };
+        let demand = self.demand(liquids);
+        self.clock.pressure_limit = self.believed(fluids);
         let (rule, last, frame) = (self.parts.substeps, self.clock.substeps, self.parts.frame_time);
         let choice = rule.choose_after(last, frame, demand);
         self.clock.stiffness = rule.stiffness_after(last, self.clock.stiffness, frame, demand, choice.substeps);
@@ -45,13 +50,16 @@ impl World {
     }
 
     /// What the number of substeps follows from.
-    pub fn demand(&self) -> Demand {
+    fn demand(&self, liquids: Survey) -> Demand {
         let parts = &self.parts;
         let emitted = parts.emitters.as_ref().map_or(0.0, |emitters| emitters.speed_max(self.clock.time));
         let moving = if self.clock.step == 0 { self.fastest() } else { self.clock.speed };
         let chain = parts.rigid.as_ref().map_or(0.0, |rigid| rigid.support_chain(wide(parts.gravity)));
-        let expected = self.depth_pressure(is_liquid).max(self.dynamic_pressure());
-        Demand { speed: moving.max(emitted), chain, pressure: expected.max(self.multiplier_pressure() / UNEXPECTED) }
+        // Pressure that the motion of the liquids within themselves can bring about.
+        let dynamic = self.square_of_relative_speed(liquids, is_liquid);
+        let known = if self.clock.step == 0 { 0.0 } else { liquids.pressure(self.clock.dt) };
+        let pressure = self.depth_pressure(liquids).max(dynamic).max(known / UNEXPECTED);
+        Demand { speed: moving.max(emitted), chain, pressure }
     }
 
     pub(super) fn fastest(&self) -> f64 {
@@ -61,86 +69,36 @@ impl World {
         f64::from(square.max(0.0)).sqrt()
     }
 
-    /// Pressure over density at the bottom of these phases, from their extent along gravity [m^2/s^2].
-    fn depth_pressure(&self, counted: fn(Phase) -> bool) -> f64 {
-        let parts = &self.parts;
-        let gravity = parts.gravity.length();
-        if gravity == 0.0 {
-            return 0.0;
-        }
-        let depth = self.extent_along(parts.gravity / gravity, counted);
-        if depth.is_finite() { f64::from(gravity) * depth * self.density_ratio() } else { 0.0 }
+    /// Direction of gravity; zero without.
+    fn down(&self) -> Vector {
+        self.parts.gravity.normalize_or_zero()
     }
 
-    /// How far these phases extend in this direction [m]; not finite where there are none.
-    fn extent_along(&self, direction: Vector, counted: fn(Phase) -> bool) -> f64 {
-        let (parts, particles) = (&self.parts, &self.parts.particles);
-        let place = |row: usize| match particles.phase[row] {
-            phase if counted(phase) => particles.position[row].dot(direction),
-            _ => Real::NAN,
-        };
-        let most = parts.parallelism.max(particles.dense(), place);
-        let least = parts.parallelism.max(particles.dense(), |row| -place(row));
-        f64::from(most) + f64::from(least)
+    fn has_gas(&self) -> bool {
+        self.parts.materials.iter().any(|material| material.phase == Phase::Gas)
+    }
+
+    /// Pressure over density at the bottom of what was surveyed, from its extent along gravity [m^2/s^2].
+    fn depth_pressure(&self, of: Survey) -> f64 {
+        let (gravity, depth) = (f64::from(self.parts.gravity.length()), of.depth());
+        if gravity > 0.0 && depth.is_finite() { gravity * depth * self.density_ratio() } else { 0.0 }
     }
 
     /// Width and depth of the liquids, across gravity and along it [m]; 0 without either.
     pub(super) fn extent(&self) -> [f64; 2] {
-        let gravity = self.parts.gravity.length();
-        let down = if gravity > 0.0 { self.parts.gravity / gravity } else { Vector::ZERO };
-        let extents = [down.perp(), down].map(|direction| self.extent_along(direction, is_liquid));
+        let down = self.down();
+        let extents = [down.perp(), down].map(|direction| self.survey(direction, is_liquid).depth());
         if extents.iter().all(|extent| extent.is_finite()) { extents } else { [0.0; 2] }
     }
 
-    /// Pressure over density of the liquids after the last substep [m^2/s^2]: the largest one if it
-    /// grows linearly with depth, taken from the mean square, so that a few particles squeezed in
-    /// somewhere do not decide for all.
-    fn multiplier_pressure(&self) -> f64 {
-        if self.clock.step == 0 {
-            return 0.0;
-        }
-        let particles = &self.parts.particles;
-        let (sum, count) = self.over(is_liquid, |row| {
-            let pressure = f64::from(particles.multiplier[row] * particles.inverse_mass[row]);
-            pressure * pressure
-        });
-        (3.0 * sum / count.max(1.0)).sqrt() / (self.clock.dt * self.clock.dt)
-    }
-
-    /// The pressure that a fluid as deep and as fast as this one can reach, with a wide margin
-    /// [m^2/s^2]. The speed is the fourth root of the mean fourth power: jets count, single drops do not.
+    /// The pressure that a fluid as deep and as fast as this one can reach, with a wide margin [m^2/s^2].
     pub(super) fn pressure_limit(&self) -> f64 {
-        let velocities = &self.parts.particles.velocity;
-        let (sum, count) = self.over(Phase::is_fluid, |row| {
-            let square = f64::from(velocities[row].length_squared());
-            square * square
-        });
-        let dynamic = 0.5 * (sum / count.max(1.0)).sqrt();
+        self.believed(self.survey(self.down(), Phase::is_fluid))
+    }
+
+    fn believed(&self, fluids: Survey) -> f64 {
         let least = LEAST_SPEED * self.parts.spacing / self.parts.frame_time;
-        PRESSURE_MARGIN * (self.depth_pressure(Phase::is_fluid) + dynamic) + least * least
-    }
-
-    /// Pressure over density that the motion of the liquids within themselves can bring about
-    /// [m^2/s^2]: the square of their speed relative to the mean one, as the fourth root of its mean
-    /// fourth power.
-    fn dynamic_pressure(&self) -> f64 {
-        let velocities = &self.parts.particles.velocity;
-        let (x, count) = self.over(is_liquid, |row| f64::from(velocities[row].x));
-        let (y, _) = self.over(is_liquid, |row| f64::from(velocities[row].y));
-        let mean = Vector64::new(x, y) / count.max(1.0);
-        let (sum, count) = self.over(is_liquid, |row| {
-            let square = (wide(velocities[row]) - mean).length_squared();
-            square * square
-        });
-        (sum / count.max(1.0)).sqrt()
-    }
-
-    /// Sum of a value over the particles of these phases, and their number.
-    fn over(&self, counted: fn(Phase) -> bool, value: impl Fn(usize) -> f64 + Sync) -> (f64, f64) {
-        let particles = &self.parts.particles;
-        let counts = |row: usize| counted(particles.phase[row]);
-        let sum = self.parts.parallelism.sum(particles.dense(), |row| if counts(row) { value(row) } else { 0.0 });
-        (sum, self.parts.parallelism.sum(particles.dense(), |row| f64::from(u8::from(counts(row)))))
+        PRESSURE_MARGIN * (self.depth_pressure(fluids) + 0.5 * fluids.square_of_speed()) + least * least
     }
 
     /// Density of the heaviest liquid in the scene over that of the lightest: a light liquid carries a heavy one.

@@ -10,6 +10,7 @@ mod sleep;
 mod solver;
 mod stages;
 mod substeps;
+mod survey;
 mod threads;
 mod timings;
 mod view;

@@ -230,7 +230,6 @@ impl World {
                 let before = self.clock.dt;
                 self.forget_walls();
                 self.clock.substeps = self.choose_substeps();
-                self.clock.pressure_limit = self.pressure_limit();
                 self.clock.dt = self.parts.frame_time / f64::from(self.clock.substeps);
                 self.keep_pressure_asleep(before);
             }

@@ -13,6 +13,9 @@ pub const CHUNK_ROWS: usize = 512;
 /// Below this many rows waking a pool costs more than it saves.
 pub const SERIAL_BELOW: usize = 4096;
 
+/// Pieces of a loop for each thread.
+const PIECES: usize = 8;
+
 /// Whether loops may use a thread pool.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parallelism {
@@ -36,6 +39,7 @@ macro_rules! chunks_of_columns {
                 assert!(rows.iter().all(|&r| r == rows[0]), "columns of one particle set have one length");
                 if self.pays(rows[0]) {
                     let columns = ($($column.par_chunks_mut(CHUNK_ROWS),)+).into_par_iter().enumerate();
+                    let columns = columns.with_max_len(piece(rows[0].div_ceil(CHUNK_ROWS)));
                     columns.for_each(|(c, ($($column,)+))| work(c * CHUNK_ROWS, $($column),+));
                 } else {
                     for first in (0..rows[0]).step_by(CHUNK_ROWS) {
@@ -95,7 +99,9 @@ impl Parallelism {
     /// Hands `out` out in chunks of [`CHUNK_ROWS`], each with the row it starts at.
     pub fn chunks<T: Send>(self, out: &mut [T], work: impl Fn(usize, &mut [T]) + Sync) {
         if self.pays(out.len()) {
-            out.par_chunks_mut(CHUNK_ROWS).enumerate().for_each(|(c, chunk)| work(c * CHUNK_ROWS, chunk));
+            let chunks = out.par_chunks_mut(CHUNK_ROWS).enumerate();
+            let most = piece(chunks.len());
+            chunks.with_max_len(most).for_each(|(c, chunk)| work(c * CHUNK_ROWS, chunk));
         } else {
             out.chunks_mut(CHUNK_ROWS).enumerate().for_each(|(c, chunk)| work(c * CHUNK_ROWS, chunk));
         }
@@ -104,7 +110,8 @@ impl Parallelism {
     /// Runs `work` on each of a few large items (chunks of a list, bands of a sort) that stand for `rows` rows.
     pub fn each<T: Send>(self, rows: usize, items: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
         if self.pays(rows) {
-            items.par_iter_mut().enumerate().for_each(|(k, item)| work(k, item));
+            let most = piece(items.len());
+            items.par_iter_mut().enumerate().with_max_len(most).for_each(|(k, item)| work(k, item));
         } else {
             items.iter_mut().enumerate().for_each(|(k, item)| work(k, item));
         }
@@ -135,6 +142,12 @@ impl Parallelism {
     pub fn all(self, rows: usize, test: impl Fn(usize) -> bool + Sync) -> bool {
         self.reduce(rows, |mut range| range.all(&test), |a, b| a && b)
     }
+}
+
+/// Chunks that one thread takes at most in one piece: rayon left alone deals out quarters of a loop on two
+/// threads, and at 10,000 rows one of them waits for the other a third of the time.
+fn piece(chunks: usize) -> usize {
+    (chunks / (PIECES * rayon::current_num_threads())).max(1)
 }
 
 /// The middle of a range, on a chunk border; `None` when the range is a leaf.
