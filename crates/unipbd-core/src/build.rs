@@ -85,6 +85,7 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     for (id, body, place) in &ropes.tied {
         rigid.iter_mut().for_each(|rigid| rigid.tie(*id, body, *place));
     }
+    particles.fit();
     // Sums and corrections of each iteration, and about one pass for each effect.
     let passes = 2.0 * f64::from(scene.solver.iterations) + effects.len() as f64;
     let cost = ListCost { radius: scene.solver.kernel_radius, passes };

@@ -67,6 +67,11 @@ macro_rules! columns {
                 $( self.$name.pop(); )*
             }
 
+            /// Lets go of the room that filling the columns one by one has left over.
+            pub(crate) fn fit(&mut self) {
+                $( self.$name.shrink_to_fit(); )*
+            }
+
             /// Brings the rows from `first` on into a new order: row `first + i` becomes what stood in
             /// row `first + order[i]`.
             pub(crate) fn reorder(
