@@ -9,7 +9,7 @@ pub fn curves(outcomes: &[Outcome], seconds: f64) -> Vec<Curve> {
     let mut curves: Vec<Curve> = Vec::new();
     for outcome in outcomes {
         let name = outcome.solver.split(", target").next().unwrap_or_default().to_owned();
-        let point = Point { x: outcome.time / seconds, y: outcome.mean_compression(), best: false };
+        let point = Point { x: outcome.time / seconds, y: outcome.mean_compression(), counts: true, best: false };
         match curves.iter_mut().find(|curve| curve.name == name) {
             Some(curve) => curve.points.push(point),
             None => curves.push(Curve { name, points: vec![point] }),

@@ -79,8 +79,9 @@ pub const NOTES: &[(&str, &str)] = &[
      half way it is 0.48, at the prediction 0.36. So the same target takes 8 % fewer substeps than half way and 21 % fewer \
      than at the prediction, and the worst C of a dam break of 3,200 at target 1 % falls from 3.3 to 1.8 %. That is \
      what liquids with a surface do, where there is nothing but liquid: beside bodies the damping is worth its cost. \
-     Gradients at the start damp a wave as little (0.119 per period at n = 4; early 0.117, half way 0.123 at target 1 %, means \
-     of nine runs, each good to 0.003), but take a pass of their own and the smallest omega.\n\n\
+     Gradients at the start damp a wave as little (single \
+     runs scatter by 0.01 per period; means of nine at target 1 %: early 0.112 and 0.127, half way 0.123; at the start, n = 4, \
+     0.119), but take a pass of their own and the smallest omega.\n\n\
      The price is less damping of small motion: a column 30 dx deep ends with 0.66 dx/s instead of 0.51 half way, one of \
      10 dx with 0.72 instead of 0.68. At eta = 0 the surface boils (3 dx/s), so 0.3 it is. A substep counts for this with no \
      more way than the Courant condition gives, 0.4 dx: a particle that ten times that speed carried into a wall was never \

@@ -80,8 +80,8 @@ pub fn sheet(entries: &[Entry], charts: &[String]) -> String {
         text.push_str(
             "\n## Run time against error\n\nFilled points are on the front: \
              nothing is 10 % cheaper without more error, or 10 % more exact at no more cost, which is how much both scatter. Each point \
-             is run three times, in rounds over all curves, with relaxations half a percent apart: the least processor time counts, and \
-             the mean of the errors, as some hang on the arrangement by chance. The density error |C| is measured alike for all kernels, from positions alone: \
+             is run three times, those of wave and box nine times, in rounds over all curves, with relaxations half a percent apart: the \
+             least processor time counts, and the mean of the errors, as those two hang on the arrangement by chance. The density error |C| is measured alike for all kernels, from positions alone: \
              by a cubic spline whose radius is that of the widest kernel compared. The coarse projection is drawn, not judged: it carries \
              one liquid in static walls alone. Nor are, for the wave and the box, settings whose worst C in the dam break is \
              above 6 %: what gives way like a sponge keeps a wave, but is no liquid.\n\n",
