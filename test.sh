@@ -51,6 +51,7 @@ part documentation env RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-dep
 part "Rust tests" cargo test --workspace --no-fail-fast
 if [ -n "$full" ]; then
     part "long Rust tests" cargo test --workspace --no-fail-fast --release -- --include-ignored
+    part "peers build" cargo check --quiet --manifest-path benches/peers/Cargo.toml --target-dir target/peers
 fi
 if command -v python3 >/dev/null; then
     part logs logs
