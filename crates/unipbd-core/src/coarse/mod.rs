@@ -28,13 +28,15 @@ use transfer::Transfer;
 const CELL: Real = 2.0;
 /// Part of the density error of a cell that the grid takes away in one substep, by moves alone.
 const TAKEN_BACK: Real = 0.1;
+/// Steps of the solver for moves: they take back so little that what one step leaves waits for the next substep.
+const STEPS_OF_MOVES: u32 = 1;
 /// Moves of the grid go no farther than this in one substep [spacings].
 const FARTHEST: Real = 0.1;
 
 /// The coarse projection of a scene of one liquid.
 pub(crate) struct CoarseProjection {
     spacing: Real,
-    /// Steps of the solver for each of both systems.
+    /// Steps of the solver for the pressure.
     steps: u32,
     lattice: Lattice,
     openings: Openings,
@@ -44,7 +46,7 @@ pub(crate) struct CoarseProjection {
 }
 
 impl CoarseProjection {
-    /// For particles of this spacing [m], with this many steps of the solver.
+    /// For particles of this spacing [m], with this many steps of the solver for the pressure.
     pub(crate) fn new(spacing: Real, steps: u32) -> Self {
         CoarseProjection {
             spacing,
@@ -69,7 +71,7 @@ impl CoarseProjection {
         self.multigrid.coarsen(parallelism);
         self.system.demand(&self.lattice, &self.openings, self.transfer.fields(), (dt, TAKEN_BACK), parallelism);
         self.multigrid.solve(&self.system.divergence, &mut self.system.pressure, self.steps, parallelism);
-        self.multigrid.solve(&self.system.excess, &mut self.system.potential, self.steps, parallelism);
+        self.multigrid.solve(&self.system.excess, &mut self.system.potential, STEPS_OF_MOVES, parallelism);
         self.system.difference(&self.lattice, &self.openings, parallelism);
         self.push(particles, dt, parallelism);
     }
