@@ -28,8 +28,9 @@ use transfer::Transfer;
 const CELL: Real = 2.0;
 /// Part of the density error of a cell that the grid takes away in one substep, by moves alone.
 const TAKEN_BACK: Real = 0.1;
-/// Steps of the solver for moves: they take back so little that what one step leaves waits for the next substep.
-const STEPS_OF_MOVES: u32 = 1;
+/// Steps of the solver for moves: they take back little, and what is left waits for the next substep. One step leaves
+/// enough to cost momentum (2e-5 of that of a drop drawn out).
+const STEPS_OF_MOVES: u32 = 2;
 /// Moves of the grid go no farther than this in one substep [spacings].
 const FARTHEST: Real = 0.1;
 
