@@ -73,7 +73,7 @@ fn liquids_table(case: &Case, bars: &mut Vec<(String, f64)>) {
     };
     let mut peers = vec![python("SPlisHSPlasH DFSPH", "dfsph", "splishsplash.py", "dfsph:0.1")];
     if asked("salva") {
-        peers.extend([0.001, 0.01, 0.05].map(|error| Ok(liquids::salva(case, error, dt))));
+        peers.extend([0.001, 0.003, 0.01, 0.05].map(|error| Ok(liquids::salva(case, error, dt))));
     } else {
         peers.push(Err("salva2d: skipped, not asked for".to_owned()));
     }

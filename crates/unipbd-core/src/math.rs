@@ -9,6 +9,8 @@ mod precision {
     pub type Real = f32;
     /// 2D vector of the particle columns.
     pub type Vector = glam::Vec2;
+    /// Four scalars side by side.
+    pub type Quad = glam::Vec4;
 }
 #[cfg(feature = "f64")]
 mod precision {
@@ -16,7 +18,10 @@ mod precision {
     pub type Real = f64;
     /// 2D vector of the particle columns.
     pub type Vector = glam::DVec2;
+    /// Four scalars side by side.
+    pub type Quad = glam::DVec4;
 }
+pub(crate) use precision::Quad;
 pub use precision::{Real, Vector};
 
 /// 2D vector in double precision: body poses, scene coordinates, sums.

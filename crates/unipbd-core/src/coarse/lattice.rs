@@ -1,13 +1,14 @@
 //! The box of cells around the liquid, and how a place weighs its nodes.
 
-use crate::math::{Real, Vector, larger, smaller};
-use crate::parallel::Parallelism;
+use super::spans::BLOCK;
+use crate::math::{Real, Vector};
+use crate::parallel::{Parallelism, Spread};
 use crate::particles::Particles;
 use crate::walls::Walls;
 use std::ops::Range;
 
 /// Edges of the box lie on multiples of this many cells, so that it seldom changes.
-const STEP: i32 = 4;
+const STEP: i32 = 8;
 /// Cells beyond those that hold particles.
 const MARGIN: i32 = 1;
 /// Most cells for each particle, and beside.
@@ -16,8 +17,8 @@ const CELLS_BESIDE: f64 = 65_536.0;
 /// Farthest cell from the origin that is told from its neighbours.
 const FARTHEST_CELL: Real = 1e8;
 
-/// Cells `0..width` x `0..height` of a grid fixed in space, in rows with one more cell around.
-#[derive(Clone, Debug, Default, PartialEq)]
+/// Cells `0..width` x `0..height` of a grid fixed in space, in rows with at least one more cell around.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Lattice {
     /// Width of a cell [m].
     pub cell: Real,
@@ -31,12 +32,20 @@ pub(super) struct Lattice {
     pub height: usize,
 }
 
-/// The four nodes around a place: the number of the first, and the weights of it, its right, its upper and its upper
-/// right neighbour.
+/// The four nodes of one kind around a place: the number of the first, and how far the place lies on the way to its
+/// right and its upper neighbour, from 0 to 1.
 #[derive(Clone, Copy)]
 pub(super) struct Nodes {
     pub first: usize,
-    pub weights: [Real; 4],
+    pub right: Real,
+    pub up: Real,
+}
+
+/// The nodes around a place: left faces, lower faces and centres of cells.
+pub(super) struct Around {
+    pub left: Nodes,
+    pub lower: Nodes,
+    pub centre: Nodes,
 }
 
 impl Lattice {
@@ -46,7 +55,7 @@ impl Lattice {
 
     /// Cells from one row to the next.
     pub fn stride(&self) -> usize {
-        self.width + 2
+        stride(self.width)
     }
 
     /// Cells in all, with those around.
@@ -64,7 +73,7 @@ impl Lattice {
     pub fn cover(&mut self, particles: &Particles, walls: &Walls, parallelism: Parallelism) {
         self.origin = walls.anchor();
         let rows = particles.dense();
-        let (low, high) = extent(&particles.start[..rows], parallelism);
+        let (low, high) = Spread::of(&particles.start[..rows], parallelism).corners();
         let cells = |at: Real, axis: usize| {
             ((at - self.origin[axis]) / self.cell).floor().clamp(-FARTHEST_CELL, FARTHEST_CELL) as i32
         };
@@ -98,14 +107,23 @@ impl Lattice {
         place.x > 0.5 && place.y > 0.5 && place.x < right && place.y < top
     }
 
-    /// The nodes around a place, in cells, of a grid whose first node lies at `offset`.
+    /// The nodes around a place, in cells.
     #[inline(always)]
-    pub fn nodes(&self, place: Vector, offset: Vector) -> Nodes {
-        let at = place - offset + Vector::ONE;
-        let (i, j) = (at.x as i32, at.y as i32);
-        let (x, y) = (at.x - i as Real, at.y - j as Real);
-        let weights = [(1.0 - x) * (1.0 - y), x * (1.0 - y), (1.0 - x) * y, x * y];
-        Nodes { first: j as usize * self.stride() + i as usize, weights }
+    pub fn around(&self, place: Vector) -> Around {
+        let split = |at: Real| {
+            let node = at as i32;
+            (node as usize, at - node as Real)
+        };
+        // Faces lie on whole numbers across them, all else on halves; the rim is one cell wide.
+        let (across, half) = (place + Vector::ONE, place + Vector::splat(0.5));
+        let (face, centre) = ([split(across.x), split(across.y)], [split(half.x), split(half.y)]);
+        let nodes =
+            |(i, right): (usize, Real), (j, up): (usize, Real)| Nodes { first: j * self.stride() + i, right, up };
+        Around {
+            left: nodes(face[0], centre[1]),
+            lower: nodes(centre[0], face[1]),
+            centre: nodes(centre[0], centre[1]),
+        }
     }
 
     /// The numbers of all cells whose nodes places between two heights, in cells, may have. One row more than needed:
@@ -116,18 +134,7 @@ impl Lattice {
     }
 }
 
-/// Where the first node of each kind lies, in cells.
-pub(super) const LEFT_FACES: Vector = Vector::new(0.0, 0.5);
-pub(super) const LOWER_FACES: Vector = Vector::new(0.5, 0.0);
-pub(super) const CENTRES: Vector = Vector::new(0.5, 0.5);
-
-/// The corners of the box around all places.
-fn extent(places: &[Vector], parallelism: Parallelism) -> (Vector, Vector) {
-    let joined = |a: (Vector, Vector), b: (Vector, Vector)| {
-        let low = Vector::new(smaller(b.0.x, a.0.x), smaller(b.0.y, a.0.y));
-        (low, Vector::new(larger(b.1.x, a.1.x), larger(b.1.y, a.1.y)))
-    };
-    let none = (Vector::splat(Real::MAX), Vector::splat(Real::MIN));
-    let of = |rows: Range<usize>| places[rows].iter().fold(none, |extent, &x| joined(extent, (x, x)));
-    parallelism.reduce(places.len(), of, joined)
+/// Cells from one row of `width` to the next: one more on each side, and as many blocks as hold them.
+pub(super) fn stride(width: usize) -> usize {
+    (width + 2).next_multiple_of(BLOCK)
 }

@@ -10,6 +10,7 @@
 mod lattice;
 mod multigrid;
 mod openings;
+mod spans;
 mod system;
 mod transfer;
 
@@ -64,16 +65,24 @@ impl CoarseProjection {
     pub(crate) fn project(&mut self, particles: &mut Particles, walls: &Walls, dt: Real, parallelism: Parallelism) {
         let area = self.spacing * self.spacing;
         self.lattice.cover(particles, walls, parallelism);
-        self.openings.measure(&self.lattice, walls, parallelism);
+        if self.openings.measure(&self.lattice, walls, parallelism) {
+            self.multigrid.lay(&self.lattice, &self.openings, parallelism);
+            self.system.lay(self.lattice.len());
+        } else {
+            self.system.clear(self.multigrid.spans());
+        }
         self.transfer.gather(&self.lattice, particles, area, parallelism);
-        self.system.read(&self.lattice, &self.openings, self.transfer.fields(), parallelism);
-        let couplings = self.multigrid.finest(&self.lattice);
-        self.system.couple(&self.lattice, &self.openings, couplings, parallelism);
-        self.multigrid.coarsen(parallelism);
-        self.system.demand(&self.lattice, &self.openings, self.transfer.fields(), (dt, TAKEN_BACK), parallelism);
-        self.multigrid.solve(&self.system.divergence, &mut self.system.pressure, self.steps, parallelism);
-        self.multigrid.solve(&self.system.excess, &mut self.system.potential, STEPS_OF_MOVES, parallelism);
-        self.system.difference(&self.lattice, &self.openings, parallelism);
+        let (lattice, openings, fields) = (&self.lattice, &self.openings, self.transfer.fields());
+        let (system, multigrid) = (&mut self.system, &mut self.multigrid);
+        system.read_surface(lattice, openings, fields, parallelism);
+        let finest = multigrid.finest(&system.depth);
+        system.couple(lattice, openings, finest, parallelism);
+        multigrid.coarsen(parallelism);
+        system.read_flow(fields, multigrid.spans(), parallelism);
+        system.demand(lattice, openings, fields, (dt, TAKEN_BACK), multigrid.spans(), parallelism);
+        multigrid.solve(&system.divergence, &mut system.pressure, self.steps, parallelism);
+        multigrid.solve(&system.excess, &mut system.potential, STEPS_OF_MOVES, parallelism);
+        system.difference(lattice, openings, multigrid.spans(), parallelism);
         self.push(particles, dt, parallelism);
     }
 
@@ -85,14 +94,16 @@ impl CoarseProjection {
         let (velocities, remainders) = (&mut particles.velocity[..rows], &mut particles.remainder[..rows]);
         let (displacements, positions) = (&mut particles.displacement[..rows], &mut particles.position[..rows]);
         parallelism.chunks4(velocities, remainders, displacements, positions, |first, velocity, remainder, u, x| {
-            for k in 0..velocity.len() {
-                let start = starts[first + k];
-                let (change, shift) = system.felt(lattice, start);
-                if inverse_masses[first + k] > 0.0 {
+            let (count, felt) = (velocity.len(), system.felt(lattice));
+            let (inverse_masses, starts) = (&inverse_masses[first..][..count], &starts[first..][..count]);
+            let (remainder, u, x) = (&mut remainder[..count], &mut u[..count], &mut x[..count]);
+            for k in 0..count {
+                let (change, shift) = felt.at(starts[k]);
+                if inverse_masses[k] > 0.0 {
                     velocity[k] += change;
                     u[k] = velocity[k] * dt;
                     remainder[k] += shift.clamp(Vector::splat(-farthest), Vector::splat(farthest));
-                    x[k] = start + (u[k] + remainder[k]);
+                    x[k] = starts[k] + (u[k] + remainder[k]);
                 }
             }
         });

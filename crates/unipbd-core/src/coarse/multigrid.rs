@@ -1,12 +1,12 @@
 //! Conjugate gradients, with a cycle through ever coarser grids as the preconditioner.
 
 use super::held_by;
-use super::lattice::Lattice;
+use super::lattice::{Lattice, stride};
+use super::openings::Openings;
+use super::spans::{Spans, by_row};
 use super::system::Couplings;
-use crate::bytes::held;
-use crate::math::Real;
-use crate::parallel::{CHUNK_ROWS, Parallelism};
-use std::ops::Range;
+use crate::math::{Real, larger};
+use crate::parallel::Parallelism;
 
 /// Relaxation of the Jacobi sweeps: evens out best what the next grid cannot see.
 const RELAXATION: Real = 0.8;
@@ -24,27 +24,28 @@ pub(super) struct Multigrid {
     image: Vec<Real>,
 }
 
-/// One grid.
+/// One grid. All columns but those of the room are zero where there is no liquid.
 #[derive(Default)]
 struct Level {
     width: usize,
     height: usize,
+    spans: Spans,
     couplings: Couplings,
-    /// Sum of all couplings of a cell; and the relaxation over it, 0 where there is no liquid.
+    /// Sum of all couplings of a cell; and the relaxation over it.
     total: Vec<Real>,
     relax: Vec<Real>,
-    /// One over the weights of the coarser cells with room around a cell; 0 where there is no liquid.
+    /// 1 where there is room for a fluid, 0 within walls.
+    room: Vec<Real>,
+    /// One over the weights of the coarser cells with room around a cell; 0 where none has.
     scale: Vec<Real>,
-    /// Which chunks of cells hold any liquid: all others stay zero.
-    liquid: Vec<bool>,
     right_side: Vec<Real>,
     x: Vec<Real>,
     other: Vec<Real>,
 }
 
 impl Multigrid {
-    /// The couplings of the finest grid, to be set.
-    pub fn finest(&mut self, lattice: &Lattice) -> &mut Couplings {
+    /// Lays all grids, in the room that walls leave.
+    pub fn lay(&mut self, lattice: &Lattice, openings: &Openings, parallelism: Parallelism) {
         let (mut width, mut height, mut count) = (lattice.width, lattice.height, 1);
         while width.max(height) > COARSEST {
             (width, height, count) = (coarser(width), coarser(height), count + 1);
@@ -55,47 +56,83 @@ impl Multigrid {
             level.resize(width, height);
             (width, height) = (coarser(width), coarser(height));
         }
-        self.direction.resize(lattice.len(), 0.0);
-        self.image.resize(lattice.len(), 0.0);
-        &mut self.levels[0].couplings
+        for column in [&mut self.direction, &mut self.image] {
+            column.clear();
+            column.resize(lattice.len(), 0.0);
+        }
+        let room = &mut self.levels[0].room;
+        parallelism.fill(room, |k| if openings.inverse[k] > 0.0 { 1.0 } else { 0.0 });
+        self.pairs(|finer, coarser| {
+            coarser.make_room(finer, parallelism);
+            finer.weigh(coarser, parallelism);
+        });
     }
 
-    /// Makes all coarser grids.
+    /// Finds the liquid, by the depths of the cells of the finest grid, whose couplings are then to be set.
+    pub fn finest(&mut self, depth: &[Real]) -> (&Spans, &mut Couplings) {
+        for column in [&mut self.direction, &mut self.image] {
+            self.levels[0].spans.clear(column);
+        }
+        self.levels.iter_mut().for_each(Level::clear);
+        let finest = &mut self.levels[0];
+        finest.spans.find(depth, finest.stride());
+        self.pairs(|finer, coarser| {
+            coarser.spans.coarsen(&finer.spans, finer.stride(), stride(coarser.width), coarser.cells());
+        });
+        let finest = &mut self.levels[0];
+        (&finest.spans, &mut finest.couplings)
+    }
+
+    /// Couples the cells of all coarser grids.
     pub fn coarsen(&mut self, parallelism: Parallelism) {
         self.levels[0].add_up(parallelism);
-        for fine in 0..self.levels.len() - 1 {
-            let (finer, coarser) = self.levels.split_at_mut(fine + 1);
-            let (finer, coarser) = (&mut finer[fine], &mut coarser[0]);
+        self.pairs(|finer, coarser| {
             coarser.couple(finer, parallelism);
             coarser.add_up(parallelism);
-            finer.weigh(coarser, parallelism);
+        });
+    }
+
+    /// Each grid with the next coarser one, the finest first.
+    fn pairs(&mut self, mut visit: impl FnMut(&mut Level, &mut Level)) {
+        for fine in 0..self.levels.len() - 1 {
+            let (finer, coarser) = self.levels.split_at_mut(fine + 1);
+            visit(&mut finer[fine], &mut coarser[0]);
         }
     }
 
-    /// Solves by this many steps of conjugate gradients from zero.
+    /// Where the finest grid holds liquid.
+    pub fn spans(&self) -> &Spans {
+        &self.levels[0].spans
+    }
+
+    /// Solves by this many steps of conjugate gradients from zero, which `solution` holds.
     pub fn solve(&mut self, right_side: &[Real], solution: &mut [Real], steps: u32, parallelism: Parallelism) {
-        solution.fill(0.0);
         // The right side of the finest grid is the residual all along.
-        self.levels[0].right_side.copy_from_slice(right_side);
+        let finest = &mut self.levels[0];
+        finest.spans.each(&mut finest.right_side, parallelism, |first, out| {
+            out.copy_from_slice(&right_side[first..][..out.len()]);
+        });
         let mut before = 0.0;
         for step in 0..steps {
             self.cycle(0, parallelism);
             let finest = &mut self.levels[0];
-            let (found, residual) = (&finest.x, &finest.right_side);
-            let fit = dot(found, residual, parallelism);
+            let (spans, found) = (&finest.spans, &finest.x);
+            let fit = spans.dot(found, &finest.right_side, parallelism);
             if fit <= 0.0 {
                 break;
             }
             let kept = if step == 0 { 0.0 } else { (fit / before) as Real };
             before = fit;
-            match step {
-                0 => self.direction.copy_from_slice(found),
-                _ => parallelism.update(&mut self.direction, |k, p| *p = found[k] + kept * *p),
-            }
+            spans.each(&mut self.direction, parallelism, |first, direction| {
+                let found = &found[first..][..direction.len()];
+                for k in 0..direction.len() {
+                    direction[k] = found[k] + kept * direction[k];
+                }
+            });
             finest.image(&self.direction, &mut self.image, parallelism);
             let (direction, image) = (&self.direction, &self.image);
-            let length = (fit / dot(direction, image, parallelism)) as Real;
-            parallelism.chunks2(solution, &mut finest.right_side, |first, solution, residual| {
+            let length = (fit / spans.dot(direction, image, parallelism)) as Real;
+            spans.each2((solution, &mut finest.right_side), parallelism, |first, solution, residual| {
                 let (direction, image) = (&direction[first..][..solution.len()], &image[first..][..solution.len()]);
                 for k in 0..solution.len() {
                     solution[k] += length * direction[k];
@@ -115,7 +152,7 @@ impl Multigrid {
         let (finer, coarser) = self.levels.split_at_mut(level + 1);
         let (fine, coarse) = (&mut finer[level], &mut coarser[0]);
         fine.residual(parallelism);
-        fine.restrict(coarse, parallelism);
+        coarse.restrict(fine, parallelism);
         self.cycle(level + 1, parallelism);
         let (finer, coarser) = self.levels.split_at_mut(level + 1);
         finer[level].prolong(&coarser[0], parallelism);
@@ -130,11 +167,28 @@ impl Multigrid {
 
 impl Level {
     fn stride(&self) -> usize {
-        self.width + 2
+        stride(self.width)
+    }
+
+    fn cells(&self) -> usize {
+        self.stride() * (self.height + 2)
     }
 
     fn index(&self, i: usize, j: usize) -> usize {
         (j + 1) * self.stride() + i + 1
+    }
+
+    /// One row of a column.
+    fn row<'a>(&self, column: &'a [Real], row: usize) -> &'a [Real] {
+        &column[row * self.stride()..][..self.stride()]
+    }
+
+    /// The columns that hold anything of the liquid.
+    fn columns(&mut self) -> (&Spans, [&mut Vec<Real>; 8]) {
+        let Couplings { right, upper, air } = &mut self.couplings;
+        let of_solver = [&mut self.total, &mut self.relax, &mut self.right_side, &mut self.x, &mut self.other];
+        let [total, relax, right_side, x, other] = of_solver;
+        (&self.spans, [right, upper, air, total, relax, right_side, x, other])
     }
 
     fn resize(&mut self, width: usize, height: usize) {
@@ -142,204 +196,209 @@ impl Level {
             return;
         }
         (self.width, self.height) = (width, height);
-        let cells = (width + 2) * (height + 2);
-        let couplings = &mut self.couplings;
-        for column in [
-            &mut couplings.right,
-            &mut couplings.upper,
-            &mut couplings.air,
-            &mut couplings.room,
-            &mut self.total,
-            &mut self.relax,
-            &mut self.scale,
-            &mut self.right_side,
-            &mut self.x,
-            &mut self.other,
-        ] {
+        let cells = self.cells();
+        self.spans.forget();
+        let (_, columns) = self.columns();
+        for column in columns {
+            column.clear();
+            column.resize(cells, 0.0);
+        }
+        for column in [&mut self.room, &mut self.scale] {
             column.clear();
             column.resize(cells, 0.0);
         }
     }
 
-    /// Couplings between cells of four: half of what couples their parts, as they are twice as far apart.
-    fn couple(&mut self, fine: &Level, parallelism: Parallelism) {
-        let (stride, of) = (self.stride(), &fine.couplings);
-        let (width, height) = (self.width, self.height);
-        let parts = |k: usize, use_of: &dyn Fn([usize; 4]) -> Real| {
+    /// Forgets the liquid.
+    fn clear(&mut self) {
+        let (spans, columns) = self.columns();
+        columns.into_iter().for_each(|column| spans.clear(column));
+    }
+
+    /// Room in cells of four: where any part of them has some.
+    fn make_room(&mut self, fine: &Level, parallelism: Parallelism) {
+        let (width, height, stride) = (self.width, self.height, self.stride());
+        parallelism.fill(&mut self.room, |k| {
             let (i, j) = (k % stride, k / stride);
             if i == 0 || j == 0 || i > width || j > height {
                 return 0.0;
             }
-            let (i, j) = (2 * (i - 1), 2 * (j - 1));
-            // Grids are even: the last cells may lie beyond the finer one, whose rim is empty.
-            let at = |i: usize, j: usize| fine.index(i.min(fine.width), j.min(fine.height));
-            use_of([at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)])
-        };
-        let couplings = &mut self.couplings;
-        parallelism.fill(&mut couplings.right, |k| parts(k, &|[_, b, _, d]| 0.5 * (of.right[b] + of.right[d])));
-        parallelism.fill(&mut couplings.upper, |k| parts(k, &|[_, _, c, d]| 0.5 * (of.upper[c] + of.upper[d])));
-        let sum = |column: &[Real], four: [usize; 4]| four.into_iter().map(|k| column[k]).sum::<Real>();
-        parallelism.fill(&mut couplings.air, |k| parts(k, &|four| 0.5 * sum(&of.air, four)));
-        parallelism.fill(&mut couplings.room, |k| parts(k, &|four| sum(&of.room, four).min(1.0)));
+            fine.parts(i - 1, j - 1).into_iter().map(|part| fine.room[part]).fold(0.0, larger)
+        });
+    }
+
+    /// The four cells that make up one of the next grid. The last ones may lie beyond this one, whose rim is empty.
+    fn parts(&self, i: usize, j: usize) -> [usize; 4] {
+        let at = |i: usize, j: usize| self.index(i.min(self.width), j.min(self.height));
+        let (i, j) = (2 * i, 2 * j);
+        [at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)]
+    }
+
+    /// Couplings between cells of four: half of what couples their parts, as they are twice as far apart.
+    fn couple(&mut self, fine: &Level, parallelism: Parallelism) {
+        let (width, stride, of) = (self.width, self.stride(), &fine.couplings);
+        let Couplings { right, upper, air } = &mut self.couplings;
+        self.spans.each3((right, upper, air), parallelism, |first, right, upper, air| {
+            for part in by_row(first..first + right.len(), stride) {
+                let row = part.row * stride;
+                for column in part.column.max(1)..(part.column + part.cells.len()).min(width + 1) {
+                    let (k, [a, b, c, d]) = (row + column - first, fine.parts(column - 1, part.row - 1));
+                    right[k] = 0.5 * (of.right[b] + of.right[d]);
+                    upper[k] = 0.5 * (of.upper[c] + of.upper[d]);
+                    air[k] = 0.5 * (of.air[a] + of.air[b] + of.air[c] + of.air[d]);
+                }
+            }
+        });
     }
 
     fn add_up(&mut self, parallelism: Parallelism) {
-        let (stride, of) = (self.stride(), &self.couplings);
-        parallelism.fill(&mut self.total, |k| {
-            let before = |column: &[Real], back: usize| if k >= back { column[k - back] } else { 0.0 };
-            of.right[k] + before(&of.right, 1) + of.upper[k] + before(&of.upper, stride) + of.air[k]
+        let stride = self.stride();
+        let Couplings { right, upper, air } = &self.couplings;
+        self.spans.each2((&mut self.total, &mut self.relax), parallelism, |first, total, relax| {
+            let count = total.len();
+            let (r, l) = (&right[first..][..count], &right[first - 1..][..count]);
+            let (u, d) = (&upper[first..][..count], &upper[first - stride..][..count]);
+            let air = &air[first..][..count];
+            for k in 0..count {
+                let sum = r[k] + l[k] + u[k] + d[k] + air[k];
+                (total[k], relax[k]) = (sum, if sum > 0.0 { RELAXATION / sum } else { 0.0 });
+            }
         });
-        let total = &self.total;
-        parallelism.fill(&mut self.relax, |k| if total[k] > 0.0 { RELAXATION / total[k] } else { 0.0 });
-        self.liquid.clear();
-        self.liquid.extend(total.chunks(CHUNK_ROWS).map(|chunk| chunk.iter().any(|&total| total > 0.0)));
     }
 
-    /// Cells of the coarser grid around a cell, and their weights (bilinear).
-    fn around(&self, coarse: &Level, k: usize) -> [(usize, Real); 4] {
-        let (i, j) = (k % self.stride() - 1, k / self.stride() - 1);
-        let at = coarse.index(i / 2, j / 2);
-        let beside = if i % 2 == 1 { at + 1 } else { at - 1 };
-        let (far, near) = if j % 2 == 1 { (coarse.stride(), 0) } else { (0, coarse.stride()) };
-        let over = |k: usize| k + far - near;
-        [(at, 0.5625), (beside, 0.1875), (over(at), 0.1875), (over(beside), 0.0625)]
+    /// Columns or rows of the coarser grid that one of this lies in and next to, with the rims.
+    #[inline(always)]
+    fn beside(place: usize) -> [usize; 2] {
+        let at = place.div_ceil(2);
+        [at, if place.is_multiple_of(2) { at + 1 } else { at - 1 }]
+    }
+
+    /// The bilinear sum around a column of two rows of the coarser grid, the near one and the far one.
+    #[inline(always)]
+    fn blend([near, far]: [&[Real]; 2], column: usize) -> Real {
+        let [at, next] = Level::beside(column);
+        (0.5625 * near[at] + 0.1875 * near[next]) + (0.1875 * far[at] + 0.0625 * far[next])
     }
 
     fn weigh(&mut self, coarse: &Level, parallelism: Parallelism) {
-        let mut scale = std::mem::take(&mut self.scale);
-        parallelism.fill(&mut scale, |k| {
-            if self.total[k] == 0.0 {
+        let (stride, width, height) = (self.stride(), self.width, self.height);
+        parallelism.fill(&mut self.scale, |k| {
+            let (i, j) = (k % stride, k / stride);
+            if i == 0 || j == 0 || i > width || j > height {
                 return 0.0;
             }
-            let weights = self.around(coarse, k).map(|(at, weight)| weight * coarse.couplings.room[at]);
-            1.0 / weights.into_iter().sum::<Real>()
+            let sum = Level::blend(Level::beside(j).map(|row| coarse.row(&coarse.room, row)), i);
+            if sum > 0.0 { 1.0 / sum } else { 0.0 }
         });
-        self.scale = scale;
     }
 
     /// Adds what the coarser grid found.
     fn prolong(&mut self, coarse: &Level, parallelism: Parallelism) {
-        let mut x = std::mem::take(&mut self.x);
-        parallelism.update(&mut x, |k, x| {
-            if self.scale[k] > 0.0 {
-                let parts = self.around(coarse, k).map(|(at, weight)| weight * coarse.x[at]);
-                *x += self.scale[k] * ((parts[0] + parts[1]) + (parts[2] + parts[3]));
+        let (stride, scale, relax) = (self.stride(), &self.scale, &self.relax);
+        self.spans.each(&mut self.x, parallelism, |first, x| {
+            for part in by_row(first..first + x.len(), stride) {
+                let start = part.row * stride;
+                let rows = Level::beside(part.row).map(|row| coarse.row(&coarse.x, row));
+                for cell in part.cells.filter(|&cell| relax[cell] > 0.0) {
+                    x[cell - first] += scale[cell] * Level::blend(rows, cell - start);
+                }
             }
         });
-        self.x = x;
     }
 
-    /// Gives the residual, which [`residual`](Self::residual) left scaled in `other`, to the coarser grid: the
-    /// transpose of [`prolong`](Self::prolong).
-    fn restrict(&self, coarse: &mut Level, parallelism: Parallelism) {
-        let (stride, coarse_stride, relax) = (self.stride(), coarse.stride(), &coarse.relax);
+    /// Takes over the residual that a finer grid left scaled in `other`: the transpose of
+    /// [`prolong`](Self::prolong).
+    fn restrict(&mut self, fine: &Level, parallelism: Parallelism) {
+        let (stride, fine_stride, relax) = (self.stride(), fine.stride(), &self.relax);
         let along_row = |first: usize| {
-            let four = &self.other[first..first + 4];
+            let four = &fine.other[first..][..4];
             0.25 * (four[0] + four[3]) + 0.75 * (four[1] + four[2])
         };
-        parallelism.fill(&mut coarse.right_side, |k| {
-            if relax[k] == 0.0 {
-                return 0.0;
+        self.spans.each(&mut self.right_side, parallelism, |first, out| {
+            for part in by_row(first..first + out.len(), stride) {
+                let (start, finer) = (part.row * stride, 2 * (part.row - 1) * fine_stride);
+                for cell in part.cells.filter(|&cell| relax[cell] > 0.0) {
+                    let at = finer + 2 * (cell - start - 1);
+                    let rows = [at, at + fine_stride, at + 2 * fine_stride, at + 3 * fine_stride];
+                    let [a, b, c, d] = rows.map(along_row);
+                    out[cell - first] = 0.25 * (a + d) + 0.75 * (b + c);
+                }
             }
-            let (i, j) = (k % coarse_stride - 1, k / coarse_stride - 1);
-            let first = 2 * (j * stride + i);
-            let (outer, inner) = ([first, first + 3 * stride], [first + stride, first + 2 * stride]);
-            let [a, b, c, d] = [outer[0], outer[1], inner[0], inner[1]].map(along_row);
-            0.25 * (a + b) + 0.75 * (c + d)
         });
     }
 
     /// What the couplings make of a field.
     fn image(&self, x: &[Real], out: &mut [Real], parallelism: Parallelism) {
-        self.stencil(x, out, parallelism, |_, x, total, coupled| total * x - coupled);
+        self.stencil(x, out, parallelism, |x, total, coupled, _| total * x - coupled, [&self.relax; 2]);
     }
 
     /// What is left of the right side, scaled for the coarser grid, into `other`.
     fn residual(&mut self, parallelism: Parallelism) {
         let mut other = std::mem::take(&mut self.other);
-        let (right_side, scale) = (&self.right_side, &self.scale);
-        self.stencil(&self.x, &mut other, parallelism, |k, x, total, coupled| {
-            scale[k] * (right_side[k] - (total * x - coupled))
-        });
+        let left = |x: Real, total: Real, coupled: Real, [scale, right_side]: [Real; 2]| {
+            scale * (right_side - (total * x - coupled))
+        };
+        self.stencil(&self.x, &mut other, parallelism, left, [&self.scale, &self.right_side]);
         self.other = other;
     }
 
     fn sweep_from_zero(&mut self, sweeps: usize, parallelism: Parallelism) {
         let (relax, right_side) = (&self.relax, &self.right_side);
-        parallelism.fill(&mut self.x, |k| relax[k] * right_side[k]);
+        self.spans.each(&mut self.x, parallelism, |first, x| {
+            let (relax, right_side) = (&relax[first..][..x.len()], &right_side[first..][..x.len()]);
+            for k in 0..x.len() {
+                x[k] = relax[k] * right_side[k];
+            }
+        });
         self.sweep(sweeps - 1, parallelism);
     }
 
     fn sweep(&mut self, sweeps: usize, parallelism: Parallelism) {
+        let better = |x: Real, total: Real, coupled: Real, [relax, right_side]: [Real; 2]| {
+            x + relax * (right_side - (total * x - coupled))
+        };
         for _ in 0..sweeps {
             let mut other = std::mem::take(&mut self.other);
-            let (relax, right_side) = (&self.relax, &self.right_side);
-            self.stencil(&self.x, &mut other, parallelism, |k, x, total, coupled| {
-                x + relax[k] * (right_side[k] - (total * x - coupled))
-            });
+            self.stencil(&self.x, &mut other, parallelism, better, [&self.relax, &self.right_side]);
             self.other = std::mem::replace(&mut self.x, other);
         }
     }
 
-    /// `out[k] = value(k, x[k], total[k], sum of couplings times neighbours)` within the rim, 0 on it.
+    /// `out = value(x, total, sum of couplings times neighbours, columns)` for each cell of the liquid.
     #[inline(always)]
     fn stencil(
         &self,
         x: &[Real],
         out: &mut [Real],
         parallelism: Parallelism,
-        value: impl Fn(usize, Real, Real, Real) -> Real + Sync,
+        value: impl Fn(Real, Real, Real, [Real; 2]) -> Real + Sync,
+        columns: [&[Real]; 2],
     ) {
-        let (stride, cells) = (self.stride(), x.len());
+        let (stride, [a, b]) = (self.stride(), columns);
         let (right, upper, total) = (&self.couplings.right, &self.couplings.upper, &self.total);
-        parallelism.chunks(out, |first, out| {
-            let (low, high) = (stride.max(first), (cells - stride).min(first + out.len()));
-            if low >= high || !self.liquid[first / CHUNK_ROWS] {
-                out.fill(0.0);
-                return;
-            }
-            let count = high - low;
-            out[..low - first].fill(0.0);
-            out[high - first..].fill(0.0);
-            let out = &mut out[low - first..high - first];
-            let (xc, xr, xl) = (&x[low..][..count], &x[low + 1..][..count], &x[low - 1..][..count]);
-            let (xu, xd) = (&x[low + stride..][..count], &x[low - stride..][..count]);
-            let (cr, cl) = (&right[low..][..count], &right[low - 1..][..count]);
-            let (cu, cd) = (&upper[low..][..count], &upper[low - stride..][..count]);
-            let total = &total[low..][..count];
+        self.spans.each(out, parallelism, |first, out| {
+            let count = out.len();
+            let (xc, xr, xl) = (&x[first..][..count], &x[first + 1..][..count], &x[first - 1..][..count]);
+            let (xu, xd) = (&x[first + stride..][..count], &x[first - stride..][..count]);
+            let (cr, cl) = (&right[first..][..count], &right[first - 1..][..count]);
+            let (cu, cd) = (&upper[first..][..count], &upper[first - stride..][..count]);
+            let (total, a, b) = (&total[first..][..count], &a[first..][..count], &b[first..][..count]);
             for k in 0..count {
                 let coupled = (cr[k] * xr[k] + cl[k] * xl[k]) + (cu[k] * xu[k] + cd[k] * xd[k]);
-                out[k] = value(low + k, xc[k], total[k], coupled);
+                out[k] = value(xc[k], total[k], coupled, [a[k], b[k]]);
             }
         });
     }
 
     fn memory_bytes(&self) -> usize {
-        let couplings = &self.couplings;
-        held_by(&[&couplings.right, &couplings.upper, &couplings.air, &couplings.room])
-            + held_by(&[&self.total, &self.relax, &self.scale, &self.right_side, &self.x, &self.other])
-            + held(&self.liquid)
+        let Couplings { right, upper, air } = &self.couplings;
+        held_by(&[right, upper, air, &self.room, &self.scale])
+            + held_by(&[&self.total, &self.relax, &self.right_side, &self.x, &self.other])
+            + self.spans.memory_bytes()
     }
 }
 
 /// Cells of the next grid along an axis of this many: as even a number, so that all cells have their parts.
 fn coarser(cells: usize) -> usize {
     (cells / 2 + 1) & !1
-}
-
-/// The sum of products, in an order that depends on nothing but the length.
-fn dot(a: &[Real], b: &[Real], parallelism: Parallelism) -> f64 {
-    const LANES: usize = 8;
-    let of_chunk = |rows: Range<usize>| {
-        let (a, b) = (a[rows.clone()].chunks_exact(LANES), b[rows].chunks_exact(LANES));
-        let rest = a.remainder().iter().zip(b.remainder()).map(|(a, b)| f64::from(a * b)).sum::<f64>();
-        let mut sums = [0.0; LANES];
-        for (a, b) in a.zip(b) {
-            for lane in 0..LANES {
-                sums[lane] += a[lane] * b[lane];
-            }
-        }
-        sums.into_iter().map(f64::from).sum::<f64>() + rest
-    };
-    parallelism.reduce(a.len(), of_chunk, |a, b| a + b)
 }

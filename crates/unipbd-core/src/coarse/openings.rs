@@ -27,12 +27,12 @@ pub(super) struct Openings {
 }
 
 impl Openings {
-    /// Measures all openings, unless the lattice is still the same: walls stand still.
-    pub fn measure(&mut self, lattice: &Lattice, walls: &Walls, parallelism: Parallelism) {
+    /// Measures all openings, unless the lattice is still the same: walls stand still. Tells whether it did.
+    pub fn measure(&mut self, lattice: &Lattice, walls: &Walls, parallelism: Parallelism) -> bool {
         if self.of == *lattice && !self.left.is_empty() {
-            return;
+            return false;
         }
-        self.of = lattice.clone();
+        self.of = *lattice;
         let (cells, stride, cell) = (lattice.len(), lattice.stride(), lattice.cell);
         for column in [&mut self.left, &mut self.lower, &mut self.inverse, &mut self.corners] {
             column.resize(cells, 0.0);
@@ -56,6 +56,7 @@ impl Openings {
             let near = distance(centre) < 1.5 * cell;
             if near { 1.0 / larger(open_surroundings(centre, cell, distance), LEAST) } else { 1.0 }
         });
+        true
     }
 
     /// Memory held [bytes].

@@ -1,11 +1,12 @@
 //! The linear system of the grid: which cells are liquid, how they are coupled, and what is asked of them.
 
 use super::held_by;
-use super::lattice::{CENTRES, LEFT_FACES, LOWER_FACES, Lattice};
+use super::lattice::Lattice;
 use super::openings::Openings;
+use super::spans::{BLOCK, Spans};
 use super::transfer::{Fields, interpolate, mean};
 use crate::bytes::held;
-use crate::math::{Real, Vector, larger, smaller};
+use crate::math::{Quad, Real, Vector, larger, smaller};
 use crate::parallel::Parallelism;
 
 /// Least distance of the free surface from a cell, as a part of the distance of two cells.
@@ -32,15 +33,13 @@ pub(super) struct Couplings {
     pub upper: Vec<Real>,
     /// With air.
     pub air: Vec<Real>,
-    /// 1 where there is room for a fluid, 0 within walls.
-    pub room: Vec<Real>,
 }
 
 /// The system of one substep, by cell.
 #[derive(Default)]
 pub(super) struct System {
     /// Distance from the free surface, in cells: not negative within the liquid.
-    depth: Vec<Real>,
+    pub depth: Vec<Real>,
     /// Velocity along x at left faces, and along y at lower ones [m/s].
     along_x: Vec<Real>,
     along_y: Vec<Real>,
@@ -52,37 +51,77 @@ pub(super) struct System {
     pub pressure: Vec<Real>,
     pub potential: Vec<Real>,
     /// At left and lower faces: change of velocity, move, and 1 where there is liquid.
-    faces: [Vec<[Real; 4]>; 2],
+    faces: [Vec<Quad>; 2],
 }
 
 impl System {
-    /// Reads the surface and the velocities from the sums of the particles.
-    pub fn read(&mut self, lattice: &Lattice, openings: &Openings, fields: &Fields, parallelism: Parallelism) {
-        self.resize(lattice.len());
-        let (depth, along_x, along_y) = (&mut self.depth, &mut self.along_x, &mut self.along_y);
-        parallelism.chunks3(depth, along_x, along_y, |first, depth, along_x, along_y| {
-            let rows = first..first + depth.len();
-            let (left, lower) = (&fields.left[rows.clone()], &fields.lower[rows.clone()]);
-            let (centre, inverse) = (&fields.centre[rows.clone()], &openings.inverse[rows]);
-            for k in 0..depth.len() {
-                depth[k] = depth_of(centre[k][1] * inverse[k]);
-                (along_x[k], along_y[k]) = (mean(left[k]), mean(lower[k]));
+    /// Makes all columns anew for a lattice of this many cells.
+    pub fn lay(&mut self, cells: usize) {
+        for column in [
+            &mut self.depth,
+            &mut self.along_x,
+            &mut self.along_y,
+            &mut self.divergence,
+            &mut self.excess,
+            &mut self.pressure,
+            &mut self.potential,
+        ] {
+            column.clear();
+            column.resize(cells, 0.0);
+        }
+        for faces in &mut self.faces {
+            faces.clear();
+            faces.resize(cells, Quad::ZERO);
+        }
+    }
+
+    /// Forgets the last solution.
+    pub fn clear(&mut self, spans: &Spans) {
+        [&mut self.pressure, &mut self.potential].into_iter().for_each(|column| spans.clear(column));
+        self.faces.iter_mut().for_each(|faces| spans.clear(faces));
+    }
+
+    /// Reads the surface from the sums of the particles.
+    pub fn read_surface(&mut self, lattice: &Lattice, openings: &Openings, fields: &Fields, parallelism: Parallelism) {
+        parallelism.chunks(&mut self.depth, |first, depth| {
+            let (centre, _) = fields.centre[first..][..depth.len()].as_chunks::<BLOCK>();
+            let (inverse, _) = openings.inverse[first..][..depth.len()].as_chunks::<BLOCK>();
+            for ((depth, centre), inverse) in depth.as_chunks_mut::<BLOCK>().0.iter_mut().zip(centre).zip(inverse) {
+                // Most of the box may be empty.
+                let filled = centre.iter().any(|[_, weight]| *weight > 0.0);
+                let of = |k: usize| if filled { depth_of(centre[k][1] * inverse[k]) } else { -1.0 };
+                *depth = std::array::from_fn(of);
             }
         });
         // Around the box there is nothing, whatever spilled over.
         let (stride, cells) = (lattice.stride(), lattice.len());
-        let sides = (0..cells).step_by(stride).flat_map(|row| [row, row + stride - 1]);
+        let sides = (0..cells).step_by(stride).flat_map(|row| [row, row + lattice.width + 1]);
         for rim in sides.chain(0..stride).chain(cells - stride..cells) {
             self.depth[rim] = -1.0;
         }
     }
 
-    /// Sets the couplings of the cells.
-    pub fn couple(&self, lattice: &Lattice, openings: &Openings, out: &mut Couplings, parallelism: Parallelism) {
+    /// Reads the velocities in and beside the liquid from the sums of the particles.
+    pub fn read_flow(&mut self, fields: &Fields, spans: &Spans, parallelism: Parallelism) {
+        spans.each2((&mut self.along_x, &mut self.along_y), parallelism, |first, along_x, along_y| {
+            let (left, lower) = (&fields.left[first..][..along_x.len()], &fields.lower[first..][..along_x.len()]);
+            for k in 0..along_x.len() {
+                (along_x[k], along_y[k]) = (mean(left[k]), mean(lower[k]));
+            }
+        });
+    }
+
+    /// Sets the couplings of the liquid.
+    pub fn couple(
+        &self,
+        lattice: &Lattice,
+        openings: &Openings,
+        (spans, out): (&Spans, &mut Couplings),
+        parallelism: Parallelism,
+    ) {
         let (stride, depth) = (lattice.stride(), &self.depth);
         let (left, lower) = (&openings.left, &openings.lower);
-        parallelism.fill(&mut out.room, |k| if openings.inverse[k] > 0.0 { 1.0 } else { 0.0 });
-        parallelism.chunks3(&mut out.right, &mut out.upper, &mut out.air, |first, right, upper, air| {
+        spans.each3((&mut out.right, &mut out.upper, &mut out.air), parallelism, |first, right, upper, air| {
             for k in 0..right.len() {
                 let cell = first + k;
                 (right[k], upper[k], air[k]) = (0.0, 0.0, 0.0);
@@ -111,11 +150,12 @@ impl System {
         openings: &Openings,
         fields: &Fields,
         (dt, taken_back): (Real, Real),
+        spans: &Spans,
         parallelism: Parallelism,
     ) {
         let (depth, curving) = (&self.depth, CURVATURE * 0.5 * dt / lattice.cell);
         let flow = Flow { u: &self.along_x, v: &self.along_y, stride: lattice.stride() };
-        parallelism.chunks2(&mut self.divergence, &mut self.excess, |first, divergence, excess| {
+        spans.each2((&mut self.divergence, &mut self.excess), parallelism, |first, divergence, excess| {
             for k in 0..divergence.len() {
                 let cell = first + k;
                 (divergence[k], excess[k]) = (0.0, 0.0);
@@ -138,7 +178,7 @@ impl System {
     }
 
     /// Takes both solutions to the faces.
-    pub fn difference(&mut self, lattice: &Lattice, openings: &Openings, parallelism: Parallelism) {
+    pub fn difference(&mut self, lattice: &Lattice, openings: &Openings, spans: &Spans, parallelism: Parallelism) {
         let (depth, pressure, potential) = (&self.depth, &self.pressure, &self.potential);
         let open = [&openings.left, &openings.lower];
         for ((faces, open), back) in self.faces.iter_mut().zip(open).zip([1, lattice.stride()]) {
@@ -152,35 +192,28 @@ impl System {
                     (false, true) => ghost(here, before),
                 };
                 let [of_pressure, of_potential] = [pressure, potential].map(|field| field[k - back] - field[k]);
-                Some([gain * of_pressure, gain * of_potential, 1.0, 0.0])
+                Some(Quad::new(gain * of_pressure, gain * of_potential, 1.0, 0.0))
             };
             let inner = 2 * back..lattice.len() - back;
-            parallelism.update(faces, |k, face| {
-                // A wall is felt as the next face away from it is.
-                *face = match inner.contains(&k) {
-                    false => None,
-                    true if open[k] > 0.0 => difference(k),
-                    true if depth[k] >= 0.0 => difference(k + back),
-                    true if depth[k - back] >= 0.0 => difference(k - back),
-                    true => None,
+            // A wall is felt as the next face away from it is.
+            let felt = |k: usize| match inner.contains(&k) {
+                false => None,
+                true if open[k] > 0.0 => difference(k),
+                true if depth[k] >= 0.0 => difference(k + back),
+                true if depth[k - back] >= 0.0 => difference(k - back),
+                true => None,
+            };
+            spans.each(faces, parallelism, |first, faces| {
+                for (k, face) in faces.iter_mut().enumerate() {
+                    *face = felt(first + k).unwrap_or_default();
                 }
-                .unwrap_or_default();
             });
         }
     }
 
-    /// The change of velocity [m/s] and the move [m] that a place feels.
-    #[inline(always)]
-    pub fn felt(&self, lattice: &Lattice, x: Vector) -> (Vector, Vector) {
-        let place = lattice.place(x);
-        if !lattice.holds(place) {
-            return (Vector::ZERO, Vector::ZERO);
-        }
-        let stride = lattice.stride();
-        let [u, shift_x, left, _] = interpolate(&self.faces[0], stride, lattice.nodes(place, LEFT_FACES));
-        let [v, shift_y, lower, _] = interpolate(&self.faces[1], stride, lattice.nodes(place, LOWER_FACES));
-        let per = Vector::new(1.0 / larger(left, WHOLLY_FELT), 1.0 / larger(lower, WHOLLY_FELT));
-        (Vector::new(u, v) * per, Vector::new(shift_x, shift_y) * per)
+    /// What particles feel.
+    pub fn felt(&self, lattice: &Lattice) -> Felt<'_> {
+        Felt { lattice: *lattice, faces: [&self.faces[0], &self.faces[1]] }
     }
 
     /// The pressure at a place, in the unit of the solution [m/s]: air has none, walls that beside them.
@@ -189,10 +222,15 @@ impl System {
         if !lattice.holds(place) {
             return 0.0;
         }
-        let (nodes, stride) = (lattice.nodes(place, CENTRES), lattice.stride());
+        let (nodes, stride) = (lattice.around(place).centre, lattice.stride());
+        let (left, right, low, high) = (1.0 - nodes.right, nodes.right, 1.0 - nodes.up, nodes.up);
         let cells = [nodes.first, nodes.first + 1, nodes.first + stride, nodes.first + stride + 1];
         let (mut sum, mut weights) = (0.0, 0.0);
-        for (cell, weight) in cells.into_iter().zip(nodes.weights).filter(|(cell, _)| openings.inverse[*cell] > 0.0) {
+        for (cell, weight) in cells
+            .into_iter()
+            .zip([left * low, right * low, left * high, right * high])
+            .filter(|(cell, _)| openings.inverse[*cell] > 0.0)
+        {
             sum += weight * self.pressure[cell];
             weights += weight;
         }
@@ -220,26 +258,33 @@ impl System {
         }
     }
 
-    fn resize(&mut self, cells: usize) {
-        for column in [
-            &mut self.depth,
-            &mut self.along_x,
-            &mut self.along_y,
-            &mut self.divergence,
-            &mut self.excess,
-            &mut self.pressure,
-            &mut self.potential,
-        ] {
-            column.resize(cells, 0.0);
-        }
-        self.faces.iter_mut().for_each(|faces| faces.resize(cells, [0.0; 4]));
-    }
-
     /// Memory held [bytes].
     pub fn memory_bytes(&self) -> usize {
         held_by(&[&self.depth, &self.along_x, &self.along_y, &self.divergence, &self.excess])
             + held_by(&[&self.pressure, &self.potential])
             + self.faces.iter().map(held).sum::<usize>()
+    }
+}
+
+/// The solution at the faces. It holds the lattice itself, so that loops keep it in registers.
+pub(super) struct Felt<'a> {
+    lattice: Lattice,
+    faces: [&'a [Quad]; 2],
+}
+
+impl Felt<'_> {
+    /// The change of velocity [m/s] and the move [m] that a place feels.
+    #[inline(always)]
+    pub fn at(&self, x: Vector) -> (Vector, Vector) {
+        let place = self.lattice.place(x);
+        if !self.lattice.holds(place) {
+            return (Vector::ZERO, Vector::ZERO);
+        }
+        let (stride, around) = (self.lattice.stride(), self.lattice.around(place));
+        let along_x = interpolate(self.faces[0], stride, around.left);
+        let along_y = interpolate(self.faces[1], stride, around.lower);
+        let per = Vector::new(1.0 / larger(along_x.z, WHOLLY_FELT), 1.0 / larger(along_y.z, WHOLLY_FELT));
+        (Vector::new(along_x.x, along_y.x) * per, Vector::new(along_x.y, along_y.y) * per)
     }
 }
 

@@ -1,8 +1,8 @@
 //! From particles to the nodes of the grid, and back to any place.
 
-use super::lattice::{CENTRES, LEFT_FACES, LOWER_FACES, Lattice, Nodes};
+use super::lattice::{Lattice, Nodes};
 use crate::bytes::held;
-use crate::math::{Real, larger, smaller};
+use crate::math::{Quad, Real, larger, smaller};
 use crate::parallel::{CHUNK_ROWS, Parallelism};
 use crate::particles::Particles;
 use std::ops::Range;
@@ -57,7 +57,14 @@ impl Transfer {
             task.rows = (k * per_task).min(rows)..((k + 1) * per_task).min(rows);
         }
         let filled = area / (lattice.cell * lattice.cell);
-        parallelism.each(rows, &mut self.tasks, |_, task| task.spread(lattice, particles, filled));
+        if let [alone] = &mut self.tasks[..] {
+            alone.spread(lattice, 0..lattice.len(), particles, filled);
+            return std::mem::swap(&mut alone.fields, &mut self.fields);
+        }
+        parallelism.each(rows, &mut self.tasks, |_, task| {
+            let cells = task.reached(lattice, particles);
+            task.spread(lattice, cells, particles, filled);
+        });
         let (tasks, fields) = (&self.tasks, &mut self.fields);
         for sums in [&mut fields.left, &mut fields.lower, &mut fields.centre] {
             sums.resize(lattice.len(), [0.0; 2]);
@@ -97,28 +104,36 @@ impl Fields {
 }
 
 impl Task {
-    fn spread(&mut self, lattice: &Lattice, particles: &Particles, filled: Real) {
-        let (places, velocities) = (&particles.start[self.rows.clone()], &particles.velocity[self.rows.clone()]);
-        let errors = &particles.density_error[self.rows.clone()];
+    /// The cells that its rows may give to.
+    fn reached(&self, lattice: &Lattice, particles: &Particles) -> Range<usize> {
         let (mut low, mut high) = (lattice.height as Real, 0.0);
-        for x in places {
+        for x in &particles.start[self.rows.clone()] {
             let y = lattice.place(*x).y;
             (low, high) = (smaller(y, low), larger(y, high));
         }
         let (low, high) = (larger(low, 0.0), smaller(high, lattice.height as Real - 1.0));
-        self.cells = if low <= high { lattice.cells_between(low, high) } else { 0..0 };
+        if low <= high { lattice.cells_between(low, high) } else { 0..0 }
+    }
+
+    fn spread(&mut self, lattice: &Lattice, cells: Range<usize>, particles: &Particles, filled: Real) {
+        self.cells = cells;
+        let (places, velocities) = (&particles.start[self.rows.clone()], &particles.velocity[self.rows.clone()]);
+        let errors = &particles.density_error[self.rows.clone()];
         let (fields, first, stride) = (&mut self.fields, self.cells.start, lattice.stride());
         for sums in [&mut fields.left, &mut fields.lower, &mut fields.centre] {
             sums.clear();
             sums.resize(self.cells.len(), [0.0; 2]);
         }
+        let lattice = *lattice;
+        let [left, lower, centre] = [&mut fields.left, &mut fields.lower, &mut fields.centre].map(Vec::as_mut_slice);
         for ((&x, velocity), &error) in places.iter().zip(velocities).zip(errors) {
             let place = lattice.place(x);
             if lattice.holds(place) {
                 let error = if error > SURFACE { error } else { 0.0 };
-                add(&mut fields.left, first, stride, lattice.nodes(place, LEFT_FACES), [velocity.x, 1.0]);
-                add(&mut fields.lower, first, stride, lattice.nodes(place, LOWER_FACES), [velocity.y, 1.0]);
-                add(&mut fields.centre, first, stride, lattice.nodes(place, CENTRES), [error * filled, filled]);
+                let around = lattice.around(place);
+                add(left, first, stride, around.left, [velocity.x, 1.0]);
+                add(lower, first, stride, around.lower, [velocity.y, 1.0]);
+                add(centre, first, stride, around.centre, [error * filled, filled]);
             }
         }
     }
@@ -126,16 +141,15 @@ impl Task {
 
 /// Adds a value and its weight to the four nodes around a place.
 #[inline(always)]
-fn add(sums: &mut [[Real; 2]], first: usize, stride: usize, nodes: Nodes, value: [Real; 2]) {
-    let at = nodes.first - first;
-    let [a, b, c, d] = nodes.weights;
-    let mut pair = |at: usize, left: Real, right: Real| {
-        let pair: &mut [[Real; 2]] = &mut sums[at..at + 2];
-        pair[0] = [pair[0][0] + left * value[0], pair[0][1] + left * value[1]];
-        pair[1] = [pair[1][0] + right * value[0], pair[1][1] + right * value[1]];
+fn add(sums: &mut [[Real; 2]], first: usize, stride: usize, nodes: Nodes, [value, weight]: [Real; 2]) {
+    let (at, left) = (nodes.first - first, 1.0 - nodes.right);
+    let added = Quad::new(left, left, nodes.right, nodes.right) * Quad::new(value, weight, value, weight);
+    let mut pair = |at: usize, part: Real| {
+        let pair = sums[at..at + 2].as_flattened_mut();
+        (Quad::from_slice(pair) + added * part).write_to_slice(pair);
     };
-    pair(at, a, b);
-    pair(at + stride, c, d);
+    pair(at, 1.0 - nodes.up);
+    pair(at + stride, nodes.up);
 }
 
 /// The weighted mean at a node; 0 where nothing weighs.
@@ -146,12 +160,10 @@ pub(super) fn mean([value, weight]: [Real; 2]) -> Real {
 
 /// A field at a place.
 #[inline(always)]
-pub(super) fn interpolate(field: &[[Real; 4]], stride: usize, nodes: Nodes) -> [Real; 4] {
-    let (low, high) = (&field[nodes.first..][..2], &field[nodes.first + stride..][..2]);
-    let [a, b, c, d] = nodes.weights;
-    let mut out = [0.0; 4];
-    for n in 0..4 {
-        out[n] = (low[0][n] * a + low[1][n] * b) + (high[0][n] * c + high[1][n] * d);
-    }
-    out
+pub(super) fn interpolate(field: &[Quad], stride: usize, nodes: Nodes) -> Quad {
+    let along = |at: usize| {
+        let pair = &field[at..at + 2];
+        pair[0] * (1.0 - nodes.right) + pair[1] * nodes.right
+    };
+    along(nodes.first) * (1.0 - nodes.up) + along(nodes.first + stride) * nodes.up
 }

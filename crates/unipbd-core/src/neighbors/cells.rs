@@ -101,6 +101,11 @@ impl Cells {
         Cells { rows: Axis::new(side, periodic.y), bins: Axis::new(side / BINS_PER_ROW_HEIGHT, periodic.x) }
     }
 
+    /// Whether a point beyond another along an axis is never in a cell before its.
+    pub fn keep_order(&self) -> bool {
+        self.rows.period.is_none() && self.bins.period.is_none()
+    }
+
     #[inline(always)]
     pub fn cell(&self, point: Vector) -> Cell {
         Cell { row: self.rows.cell(point.y), bin: self.bins.cell(point.x) }

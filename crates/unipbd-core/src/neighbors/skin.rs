@@ -9,8 +9,8 @@ use super::Periodic;
 use super::grid::{Cursor, Grid};
 use super::list::NeighborList;
 use crate::bytes::held;
-use crate::math::{Real, Vector, larger, smaller};
-use crate::parallel::Parallelism;
+use crate::math::{Real, Vector, larger};
+use crate::parallel::{GROUP, Parallelism, Spread};
 use std::ops::Range;
 
 /// How particles have moved since a list was built.
@@ -112,59 +112,6 @@ impl Moves<'_> {
             visit(&std::array::from_fn(|k| moved(from_rest[k.min(last)], to_rest[k.min(last)])));
         }
     }
-}
-
-/// Displacements looked at side by side, so that they fill the vectors of the machine.
-const GROUP: usize = 4;
-
-/// The bounding box of displacements, gathered in four lanes.
-#[derive(Clone, Copy)]
-struct Spread {
-    low: [Vector; GROUP],
-    high: [Vector; GROUP],
-    /// Not a number where any displacement is infinite or not a number, else zero.
-    strange: [Vector; GROUP],
-}
-
-impl Spread {
-    const NONE: Spread = Spread {
-        low: [Vector::splat(Real::INFINITY); GROUP],
-        high: [Vector::splat(Real::NEG_INFINITY); GROUP],
-        strange: [Vector::ZERO; GROUP],
-    };
-
-    #[inline(always)]
-    fn add(&mut self, moved: &[Vector; GROUP]) {
-        for (k, &moved) in moved.iter().enumerate() {
-            self.low[k] = lower(moved, self.low[k]);
-            self.high[k] = -lower(-moved, -self.high[k]);
-            self.strange[k] += moved * 0.0;
-        }
-    }
-
-    fn join(self, other: Spread) -> Spread {
-        Spread {
-            low: std::array::from_fn(|k| lower(self.low[k], other.low[k])),
-            high: std::array::from_fn(|k| -lower(-self.high[k], -other.high[k])),
-            strange: std::array::from_fn(|k| self.strange[k] + other.strange[k]),
-        }
-    }
-
-    fn corners(&self) -> (Vector, Vector) {
-        let low = self.low.into_iter().reduce(lower).unwrap_or_default();
-        let high = self.high.into_iter().map(|high| -high).reduce(lower).unwrap_or_default();
-        (low, -high)
-    }
-
-    fn is_finite(&self) -> bool {
-        self.strange.iter().all(|strange| *strange == Vector::ZERO)
-    }
-}
-
-/// The smaller of each coordinate.
-#[inline(always)]
-fn lower(a: Vector, b: Vector) -> Vector {
-    Vector::new(smaller(a.x, b.x), smaller(a.y, b.y))
 }
 
 /// A neighbour list with its reference positions.
