@@ -100,7 +100,10 @@ pub const NOTES: &[(&str, &str)] = &[
      follows from the speed. What came out on the way, by dam breaks of 5,000 and 20,000 and columns 30 to 300 deep: \
      leaving only a share of the particles' corrections to their velocities (0.3 within the liquid) raises energy by \
      1 to 3 % at h = 2 dx and the worst density error by half; taken up whole, energy grows by at most 0.4 % and \
-     waves still lose half as much as without the grid. Moves that take back a fifth of the density error per substep lift the liquid (0.6 % of energy at h = 2 dx), a tenth 0.3 to 0.4 %, nothing at h = 2.5 dx. Faces closed by walls must be felt like the \
+     waves still lose half as much as without the grid. Moves that take back density error lift the liquid, at h = 2 dx: a \
+     fifth of the error per substep by 0.6 % of energy, a tenth by 0.2 to 0.6 % (the more, the finer and the looser the \
+     target), 0.06 by at most 0.4 %, at h = 2.5 dx by nothing. With 0.06 instead of a tenth the smoothed density error is a \
+     tenth smaller too, the worst C a tenth larger. Faces closed by walls must be felt like the \
      next ones away from them, else the lowest row falls and the column creeps up by a spacing in ten seconds. Cells \
      within the liquid that are filled less than 0.9 are drawn together: the grid would keep their pores open.\n\n\
      Its pressures are those of the grid and of the multipliers added up: read from the momentum of pairs, as without \

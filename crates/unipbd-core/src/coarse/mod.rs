@@ -28,7 +28,7 @@ use transfer::Transfer;
 /// Cells of the grid are this many spacings wide: four particles each.
 const CELL: Real = 2.0;
 /// Part of the density error of a cell that the grid takes away in one substep, by moves alone.
-const TAKEN_BACK: Real = 0.1;
+const TAKEN_BACK: Real = 0.06;
 /// Steps of the solver for moves: they take back little, and what is left waits for the next substep. One step leaves
 /// enough to cost momentum (2e-5 of that of a drop drawn out).
 const STEPS_OF_MOVES: u32 = 2;
