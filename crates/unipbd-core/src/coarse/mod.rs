@@ -8,6 +8,7 @@
 //! kept from one substep to the next: a saved run goes on bit for bit.
 
 mod lattice;
+mod level;
 mod multigrid;
 mod openings;
 mod spans;

@@ -1,15 +1,14 @@
 //! Conjugate gradients, with a cycle through ever coarser grids as the preconditioner.
 
 use super::held_by;
-use super::lattice::{Lattice, stride};
+use super::lattice::Lattice;
+use super::level::Level;
 use super::openings::Openings;
-use super::spans::{Spans, by_row};
+use super::spans::Spans;
 use super::system::Couplings;
-use crate::math::{Real, larger};
+use crate::math::Real;
 use crate::parallel::Parallelism;
 
-/// Relaxation of the Jacobi sweeps: evens out best what the next grid cannot see.
-const RELAXATION: Real = 0.8;
 /// Sweeps before and after each coarser grid.
 const SWEEPS: usize = 2;
 /// Sweeps on the coarsest grid, and how many cells it has along an axis at most.
@@ -22,25 +21,6 @@ pub(super) struct Multigrid {
     levels: Vec<Level>,
     direction: Vec<Real>,
     image: Vec<Real>,
-}
-
-/// One grid. All columns but those of the room are zero where there is no liquid.
-#[derive(Default)]
-struct Level {
-    width: usize,
-    height: usize,
-    spans: Spans,
-    couplings: Couplings,
-    /// Sum of all couplings of a cell; and the relaxation over it.
-    total: Vec<Real>,
-    relax: Vec<Real>,
-    /// 1 where there is room for a fluid, 0 within walls.
-    room: Vec<Real>,
-    /// One over the weights of the coarser cells with room around a cell; 0 where none has.
-    scale: Vec<Real>,
-    right_side: Vec<Real>,
-    x: Vec<Real>,
-    other: Vec<Real>,
 }
 
 impl Multigrid {
@@ -77,7 +57,7 @@ impl Multigrid {
         let finest = &mut self.levels[0];
         finest.spans.find(depth, finest.stride());
         self.pairs(|finer, coarser| {
-            coarser.spans.coarsen(&finer.spans, finer.stride(), stride(coarser.width), coarser.cells());
+            coarser.spans.coarsen(&finer.spans, finer.stride(), coarser.stride(), coarser.cells());
         });
         let finest = &mut self.levels[0];
         (&finest.spans, &mut finest.couplings)
@@ -162,239 +142,6 @@ impl Multigrid {
     /// Memory held [bytes].
     pub fn memory_bytes(&self) -> usize {
         self.levels.iter().map(Level::memory_bytes).sum::<usize>() + held_by(&[&self.direction, &self.image])
-    }
-}
-
-impl Level {
-    fn stride(&self) -> usize {
-        stride(self.width)
-    }
-
-    fn cells(&self) -> usize {
-        self.stride() * (self.height + 2)
-    }
-
-    fn index(&self, i: usize, j: usize) -> usize {
-        (j + 1) * self.stride() + i + 1
-    }
-
-    /// One row of a column.
-    fn row<'a>(&self, column: &'a [Real], row: usize) -> &'a [Real] {
-        &column[row * self.stride()..][..self.stride()]
-    }
-
-    /// The columns that hold anything of the liquid.
-    fn columns(&mut self) -> (&Spans, [&mut Vec<Real>; 8]) {
-        let Couplings { right, upper, air } = &mut self.couplings;
-        let of_solver = [&mut self.total, &mut self.relax, &mut self.right_side, &mut self.x, &mut self.other];
-        let [total, relax, right_side, x, other] = of_solver;
-        (&self.spans, [right, upper, air, total, relax, right_side, x, other])
-    }
-
-    fn resize(&mut self, width: usize, height: usize) {
-        if (self.width, self.height) == (width, height) {
-            return;
-        }
-        (self.width, self.height) = (width, height);
-        let cells = self.cells();
-        self.spans.forget();
-        let (_, columns) = self.columns();
-        for column in columns {
-            column.clear();
-            column.resize(cells, 0.0);
-        }
-        for column in [&mut self.room, &mut self.scale] {
-            column.clear();
-            column.resize(cells, 0.0);
-        }
-    }
-
-    /// Forgets the liquid.
-    fn clear(&mut self) {
-        let (spans, columns) = self.columns();
-        columns.into_iter().for_each(|column| spans.clear(column));
-    }
-
-    /// Room in cells of four: where any part of them has some.
-    fn make_room(&mut self, fine: &Level, parallelism: Parallelism) {
-        let (width, height, stride) = (self.width, self.height, self.stride());
-        parallelism.fill(&mut self.room, |k| {
-            let (i, j) = (k % stride, k / stride);
-            if i == 0 || j == 0 || i > width || j > height {
-                return 0.0;
-            }
-            fine.parts(i - 1, j - 1).into_iter().map(|part| fine.room[part]).fold(0.0, larger)
-        });
-    }
-
-    /// The four cells that make up one of the next grid. The last ones may lie beyond this one, whose rim is empty.
-    fn parts(&self, i: usize, j: usize) -> [usize; 4] {
-        let at = |i: usize, j: usize| self.index(i.min(self.width), j.min(self.height));
-        let (i, j) = (2 * i, 2 * j);
-        [at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)]
-    }
-
-    /// Couplings between cells of four: half of what couples their parts, as they are twice as far apart.
-    fn couple(&mut self, fine: &Level, parallelism: Parallelism) {
-        let (width, stride, of) = (self.width, self.stride(), &fine.couplings);
-        let Couplings { right, upper, air } = &mut self.couplings;
-        self.spans.each3((right, upper, air), parallelism, |first, right, upper, air| {
-            for part in by_row(first..first + right.len(), stride) {
-                let row = part.row * stride;
-                for column in part.column.max(1)..(part.column + part.cells.len()).min(width + 1) {
-                    let (k, [a, b, c, d]) = (row + column - first, fine.parts(column - 1, part.row - 1));
-                    right[k] = 0.5 * (of.right[b] + of.right[d]);
-                    upper[k] = 0.5 * (of.upper[c] + of.upper[d]);
-                    air[k] = 0.5 * (of.air[a] + of.air[b] + of.air[c] + of.air[d]);
-                }
-            }
-        });
-    }
-
-    fn add_up(&mut self, parallelism: Parallelism) {
-        let stride = self.stride();
-        let Couplings { right, upper, air } = &self.couplings;
-        self.spans.each2((&mut self.total, &mut self.relax), parallelism, |first, total, relax| {
-            let count = total.len();
-            let (r, l) = (&right[first..][..count], &right[first - 1..][..count]);
-            let (u, d) = (&upper[first..][..count], &upper[first - stride..][..count]);
-            let air = &air[first..][..count];
-            for k in 0..count {
-                let sum = r[k] + l[k] + u[k] + d[k] + air[k];
-                (total[k], relax[k]) = (sum, if sum > 0.0 { RELAXATION / sum } else { 0.0 });
-            }
-        });
-    }
-
-    /// Columns or rows of the coarser grid that one of this lies in and next to, with the rims.
-    #[inline(always)]
-    fn beside(place: usize) -> [usize; 2] {
-        let at = place.div_ceil(2);
-        [at, if place.is_multiple_of(2) { at + 1 } else { at - 1 }]
-    }
-
-    /// The bilinear sum around a column of two rows of the coarser grid, the near one and the far one.
-    #[inline(always)]
-    fn blend([near, far]: [&[Real]; 2], column: usize) -> Real {
-        let [at, next] = Level::beside(column);
-        (0.5625 * near[at] + 0.1875 * near[next]) + (0.1875 * far[at] + 0.0625 * far[next])
-    }
-
-    fn weigh(&mut self, coarse: &Level, parallelism: Parallelism) {
-        let (stride, width, height) = (self.stride(), self.width, self.height);
-        parallelism.fill(&mut self.scale, |k| {
-            let (i, j) = (k % stride, k / stride);
-            if i == 0 || j == 0 || i > width || j > height {
-                return 0.0;
-            }
-            let sum = Level::blend(Level::beside(j).map(|row| coarse.row(&coarse.room, row)), i);
-            if sum > 0.0 { 1.0 / sum } else { 0.0 }
-        });
-    }
-
-    /// Adds what the coarser grid found.
-    fn prolong(&mut self, coarse: &Level, parallelism: Parallelism) {
-        let (stride, scale, relax) = (self.stride(), &self.scale, &self.relax);
-        self.spans.each(&mut self.x, parallelism, |first, x| {
-            for part in by_row(first..first + x.len(), stride) {
-                let start = part.row * stride;
-                let rows = Level::beside(part.row).map(|row| coarse.row(&coarse.x, row));
-                for cell in part.cells.filter(|&cell| relax[cell] > 0.0) {
-                    x[cell - first] += scale[cell] * Level::blend(rows, cell - start);
-                }
-            }
-        });
-    }
-
-    /// Takes over the residual that a finer grid left scaled in `other`: the transpose of
-    /// [`prolong`](Self::prolong).
-    fn restrict(&mut self, fine: &Level, parallelism: Parallelism) {
-        let (stride, fine_stride, relax) = (self.stride(), fine.stride(), &self.relax);
-        let along_row = |first: usize| {
-            let four = &fine.other[first..][..4];
-            0.25 * (four[0] + four[3]) + 0.75 * (four[1] + four[2])
-        };
-        self.spans.each(&mut self.right_side, parallelism, |first, out| {
-            for part in by_row(first..first + out.len(), stride) {
-                let (start, finer) = (part.row * stride, 2 * (part.row - 1) * fine_stride);
-                for cell in part.cells.filter(|&cell| relax[cell] > 0.0) {
-                    let at = finer + 2 * (cell - start - 1);
-                    let rows = [at, at + fine_stride, at + 2 * fine_stride, at + 3 * fine_stride];
-                    let [a, b, c, d] = rows.map(along_row);
-                    out[cell - first] = 0.25 * (a + d) + 0.75 * (b + c);
-                }
-            }
-        });
-    }
-
-    /// What the couplings make of a field.
-    fn image(&self, x: &[Real], out: &mut [Real], parallelism: Parallelism) {
-        self.stencil(x, out, parallelism, |x, total, coupled, _| total * x - coupled, [&self.relax; 2]);
-    }
-
-    /// What is left of the right side, scaled for the coarser grid, into `other`.
-    fn residual(&mut self, parallelism: Parallelism) {
-        let mut other = std::mem::take(&mut self.other);
-        let left = |x: Real, total: Real, coupled: Real, [scale, right_side]: [Real; 2]| {
-            scale * (right_side - (total * x - coupled))
-        };
-        self.stencil(&self.x, &mut other, parallelism, left, [&self.scale, &self.right_side]);
-        self.other = other;
-    }
-
-    fn sweep_from_zero(&mut self, sweeps: usize, parallelism: Parallelism) {
-        let (relax, right_side) = (&self.relax, &self.right_side);
-        self.spans.each(&mut self.x, parallelism, |first, x| {
-            let (relax, right_side) = (&relax[first..][..x.len()], &right_side[first..][..x.len()]);
-            for k in 0..x.len() {
-                x[k] = relax[k] * right_side[k];
-            }
-        });
-        self.sweep(sweeps - 1, parallelism);
-    }
-
-    fn sweep(&mut self, sweeps: usize, parallelism: Parallelism) {
-        let better = |x: Real, total: Real, coupled: Real, [relax, right_side]: [Real; 2]| {
-            x + relax * (right_side - (total * x - coupled))
-        };
-        for _ in 0..sweeps {
-            let mut other = std::mem::take(&mut self.other);
-            self.stencil(&self.x, &mut other, parallelism, better, [&self.relax, &self.right_side]);
-            self.other = std::mem::replace(&mut self.x, other);
-        }
-    }
-
-    /// `out = value(x, total, sum of couplings times neighbours, columns)` for each cell of the liquid.
-    #[inline(always)]
-    fn stencil(
-        &self,
-        x: &[Real],
-        out: &mut [Real],
-        parallelism: Parallelism,
-        value: impl Fn(Real, Real, Real, [Real; 2]) -> Real + Sync,
-        columns: [&[Real]; 2],
-    ) {
-        let (stride, [a, b]) = (self.stride(), columns);
-        let (right, upper, total) = (&self.couplings.right, &self.couplings.upper, &self.total);
-        self.spans.each(out, parallelism, |first, out| {
-            let count = out.len();
-            let (xc, xr, xl) = (&x[first..][..count], &x[first + 1..][..count], &x[first - 1..][..count]);
-            let (xu, xd) = (&x[first + stride..][..count], &x[first - stride..][..count]);
-            let (cr, cl) = (&right[first..][..count], &right[first - 1..][..count]);
-            let (cu, cd) = (&upper[first..][..count], &upper[first - stride..][..count]);
-            let (total, a, b) = (&total[first..][..count], &a[first..][..count], &b[first..][..count]);
-            for k in 0..count {
-                let coupled = (cr[k] * xr[k] + cl[k] * xl[k]) + (cu[k] * xu[k] + cd[k] * xd[k]);
-                out[k] = value(xc[k], total[k], coupled, [a[k], b[k]]);
-            }
-        });
-    }
-
-    fn memory_bytes(&self) -> usize {
-        let Couplings { right, upper, air } = &self.couplings;
-        held_by(&[right, upper, air, &self.room, &self.scale])
-            + held_by(&[&self.total, &self.relax, &self.right_side, &self.x, &self.other])
-            + self.spans.memory_bytes()
     }
 }
 
