@@ -9,3 +9,4 @@ mod interface;
 mod ropes;
 mod seed;
 mod support;
+mod surface_tension;
