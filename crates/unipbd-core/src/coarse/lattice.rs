@@ -41,6 +41,14 @@ pub(super) struct Nodes {
     pub up: Real,
 }
 
+impl Nodes {
+    /// The weights of the first node, its right, its upper and its upper right neighbour.
+    pub fn weights(&self) -> [Real; 4] {
+        let (left, right, low, high) = (1.0 - self.right, self.right, 1.0 - self.up, self.up);
+        [left * low, right * low, left * high, right * high]
+    }
+}
+
 /// The nodes around a place: left faces, lower faces and centres of cells.
 pub(super) struct Around {
     pub left: Nodes,

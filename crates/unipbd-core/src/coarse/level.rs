@@ -1,9 +1,9 @@
 //! One grid of the cycle: its couplings, its sweeps, and the ways to the next finer and coarser one.
 
-use super::held_by;
 use super::lattice::stride;
 use super::spans::{Spans, by_row};
 use super::system::Couplings;
+use super::{held_by, renew};
 use crate::math::{Real, larger};
 use crate::parallel::Parallelism;
 
@@ -42,6 +42,12 @@ impl Level {
         (j + 1) * self.stride() + i + 1
     }
 
+    /// Column and row of a cell, unless it is one of the rim.
+    fn within(&self, cell: usize) -> Option<(usize, usize)> {
+        let (i, j) = (cell % self.stride(), cell / self.stride());
+        ((1..=self.width).contains(&i) && (1..=self.height).contains(&j)).then_some((i, j))
+    }
+
     /// One row of a column.
     fn row<'a>(&self, column: &'a [Real], row: usize) -> &'a [Real] {
         &column[row * self.stride()..][..self.stride()]
@@ -63,14 +69,8 @@ impl Level {
         let cells = self.cells();
         self.spans.forget();
         let (_, columns) = self.columns();
-        for column in columns {
-            column.clear();
-            column.resize(cells, 0.0);
-        }
-        for column in [&mut self.room, &mut self.scale] {
-            column.clear();
-            column.resize(cells, 0.0);
-        }
+        columns.into_iter().for_each(|column| renew(column, cells));
+        [&mut self.room, &mut self.scale].into_iter().for_each(|column| renew(column, cells));
     }
 
     /// Forgets the liquid.
@@ -81,14 +81,12 @@ impl Level {
 
     /// Room in cells of four: where any part of them has some.
     pub fn make_room(&mut self, fine: &Level, parallelism: Parallelism) {
-        let (width, height, stride) = (self.width, self.height, self.stride());
-        parallelism.fill(&mut self.room, |k| {
-            let (i, j) = (k % stride, k / stride);
-            if i == 0 || j == 0 || i > width || j > height {
-                return 0.0;
-            }
+        let mut room = std::mem::take(&mut self.room);
+        parallelism.fill(&mut room, |cell| {
+            let Some((i, j)) = self.within(cell) else { return 0.0 };
             fine.parts(i - 1, j - 1).into_iter().map(|part| fine.room[part]).fold(0.0, larger)
         });
+        self.room = room;
     }
 
     /// The four cells that make up one of the next grid. The last ones may lie beyond this one, whose rim is empty.
@@ -102,7 +100,7 @@ impl Level {
     pub fn couple(&mut self, fine: &Level, parallelism: Parallelism) {
         let (width, stride, of) = (self.width, self.stride(), &fine.couplings);
         let Couplings { right, upper, air } = &mut self.couplings;
-        self.spans.each3((right, upper, air), parallelism, |first, right, upper, air| {
+        self.spans.each3(right, upper, air, parallelism, |first, right, upper, air| {
             for part in by_row(first..first + right.len(), stride) {
                 let row = part.row * stride;
                 for column in part.column.max(1)..(part.column + part.cells.len()).min(width + 1) {
@@ -118,7 +116,7 @@ impl Level {
     pub fn add_up(&mut self, parallelism: Parallelism) {
         let stride = self.stride();
         let Couplings { right, upper, air } = &self.couplings;
-        self.spans.each2((&mut self.total, &mut self.relax), parallelism, |first, total, relax| {
+        self.spans.each2(&mut self.total, &mut self.relax, parallelism, |first, total, relax| {
             let count = total.len();
             let (r, l) = (&right[first..][..count], &right[first - 1..][..count]);
             let (u, d) = (&upper[first..][..count], &upper[first - stride..][..count]);
@@ -144,16 +142,15 @@ impl Level {
         (0.5625 * near[at] + 0.1875 * near[next]) + (0.1875 * far[at] + 0.0625 * far[next])
     }
 
+    /// Weighs what the coarser grid will give, by its room.
     pub fn weigh(&mut self, coarse: &Level, parallelism: Parallelism) {
-        let (stride, width, height) = (self.stride(), self.width, self.height);
-        parallelism.fill(&mut self.scale, |k| {
-            let (i, j) = (k % stride, k / stride);
-            if i == 0 || j == 0 || i > width || j > height {
-                return 0.0;
-            }
+        let mut scale = std::mem::take(&mut self.scale);
+        parallelism.fill(&mut scale, |cell| {
+            let Some((i, j)) = self.within(cell) else { return 0.0 };
             let sum = Level::blend(Level::beside(j).map(|row| coarse.row(&coarse.room, row)), i);
             if sum > 0.0 { 1.0 / sum } else { 0.0 }
         });
+        self.scale = scale;
     }
 
     /// Adds what the coarser grid found.

@@ -154,6 +154,12 @@ impl CoarseProjection {
     }
 }
 
+/// Makes a column of this many cells, all zero.
+fn renew<T: Default + Clone>(column: &mut Vec<T>, cells: usize) {
+    column.clear();
+    column.resize(cells, T::default());
+}
+
 /// Memory held by columns [bytes].
 fn held_by(columns: &[&Vec<Real>]) -> usize {
     columns.iter().map(|column| held(column)).sum()

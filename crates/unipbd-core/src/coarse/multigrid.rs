@@ -1,11 +1,11 @@
 //! Conjugate gradients, with a cycle through ever coarser grids as the preconditioner.
 
-use super::held_by;
 use super::lattice::Lattice;
 use super::level::Level;
 use super::openings::Openings;
 use super::spans::Spans;
 use super::system::Couplings;
+use super::{held_by, renew};
 use crate::math::Real;
 use crate::parallel::Parallelism;
 
@@ -36,10 +36,7 @@ impl Multigrid {
             level.resize(width, height);
             (width, height) = (coarser(width), coarser(height));
         }
-        for column in [&mut self.direction, &mut self.image] {
-            column.clear();
-            column.resize(lattice.len(), 0.0);
-        }
+        [&mut self.direction, &mut self.image].into_iter().for_each(|column| renew(column, lattice.len()));
         let room = &mut self.levels[0].room;
         parallelism.fill(room, |k| if openings.inverse[k] > 0.0 { 1.0 } else { 0.0 });
         self.pairs(|finer, coarser| {
@@ -50,9 +47,8 @@ impl Multigrid {
 
     /// Finds the liquid, by the depths of the cells of the finest grid, whose couplings are then to be set.
     pub fn finest(&mut self, depth: &[Real]) -> (&Spans, &mut Couplings) {
-        for column in [&mut self.direction, &mut self.image] {
-            self.levels[0].spans.clear(column);
-        }
+        // The image is read only where it was just written.
+        self.levels[0].spans.clear(&mut self.direction);
         self.levels.iter_mut().for_each(Level::clear);
         let finest = &mut self.levels[0];
         finest.spans.find(depth, finest.stride());
@@ -112,7 +108,7 @@ impl Multigrid {
             finest.image(&self.direction, &mut self.image, parallelism);
             let (direction, image) = (&self.direction, &self.image);
             let length = (fit / spans.dot(direction, image, parallelism)) as Real;
-            spans.each2((solution, &mut finest.right_side), parallelism, |first, solution, residual| {
+            spans.each2(solution, &mut finest.right_side, parallelism, |first, solution, residual| {
                 let (direction, image) = (&direction[first..][..solution.len()], &image[first..][..solution.len()]);
                 for k in 0..solution.len() {
                     solution[k] += length * direction[k];

@@ -23,6 +23,37 @@ pub(super) struct Spans {
     cells: usize,
 }
 
+/// Loops over the spans of one or more columns of equal length.
+macro_rules! spans_of_columns {
+    ($($(#[$doc:meta])* $name:ident by $chunks:ident($($column:ident: $type:ident),+))+) => {
+        impl Spans {$(
+            $(#[$doc])*
+            pub fn $name<$($type: Send),+>(
+                &self,
+                $($column: &mut [$type],)+
+                parallelism: Parallelism,
+                work: impl Fn(usize, $(&mut [$type]),+) + Sync,
+            ) {
+                self.loops(parallelism).$chunks($($column,)+ |first, $($column),+| {
+                    for span in self.of_chunk(first) {
+                        let within = span.start - first..span.end - first;
+                        work(span.start, $(&mut $column[within.clone()]),+);
+                    }
+                });
+            }
+        )+}
+    };
+}
+
+spans_of_columns! {
+    /// Hands out a column by span, each with its first cell.
+    each by chunks(a: A)
+    /// As [`each`](Self::each), for two columns.
+    each2 by chunks2(a: A, b: B)
+    /// As [`each`](Self::each), for three columns.
+    each3 by chunks3(a: A, b: B, c: C)
+}
+
 impl Spans {
     /// Finds the liquid, where the depth is not negative, and the cells to the right of and above it.
     pub fn find(&mut self, depth: &[Real], stride: usize) {
@@ -92,50 +123,11 @@ impl Spans {
         if parallelism.pays(self.cells) { parallelism } else { Parallelism::Serial }
     }
 
-    /// Hands out a column by span, each with its first cell.
-    pub fn each<T: Send>(&self, out: &mut [T], parallelism: Parallelism, work: impl Fn(usize, &mut [T]) + Sync) {
-        self.loops(parallelism).chunks(out, |first, out| {
-            for span in self.of_chunk(first) {
-                work(span.start, &mut out[span.start - first..span.end - first]);
-            }
-        });
-    }
-
-    /// As [`each`](Self::each), for two columns.
-    pub fn each2<A: Send, B: Send>(
-        &self,
-        (a, b): (&mut [A], &mut [B]),
-        parallelism: Parallelism,
-        work: impl Fn(usize, &mut [A], &mut [B]) + Sync,
-    ) {
-        self.loops(parallelism).chunks2(a, b, |first, a, b| {
-            for span in self.of_chunk(first) {
-                let within = span.start - first..span.end - first;
-                work(span.start, &mut a[within.clone()], &mut b[within]);
-            }
-        });
-    }
-
-    /// As [`each`](Self::each), for three columns.
-    pub fn each3<A: Send, B: Send, C: Send>(
-        &self,
-        (a, b, c): (&mut [A], &mut [B], &mut [C]),
-        parallelism: Parallelism,
-        work: impl Fn(usize, &mut [A], &mut [B], &mut [C]) + Sync,
-    ) {
-        self.loops(parallelism).chunks3(a, b, c, |first, a, b, c| {
-            for span in self.of_chunk(first) {
-                let within = span.start - first..span.end - first;
-                work(span.start, &mut a[within.clone()], &mut b[within.clone()], &mut c[within]);
-            }
-        });
-    }
-
     /// The sum of products of two columns, in an order that depends on nothing but the spans.
     pub fn dot(&self, a: &[Real], b: &[Real], parallelism: Parallelism) -> f64 {
         let of_chunk = |cells: Range<usize>| {
             let mut sums = [0.0; BLOCK];
-            for span in if cells.is_empty() { None } else { Some(self.of_chunk(cells.start)) }.into_iter().flatten() {
+            for span in self.of_chunk(cells.start) {
                 let (a, b) = (a[span.clone()].as_chunks::<BLOCK>().0, b[span].as_chunks::<BLOCK>().0);
                 for (a, b) in a.iter().zip(b) {
                     for lane in 0..BLOCK {

@@ -1,10 +1,10 @@
 //! The linear system of the grid: which cells are liquid, how they are coupled, and what is asked of them.
 
-use super::held_by;
 use super::lattice::Lattice;
 use super::openings::Openings;
 use super::spans::{BLOCK, Spans};
 use super::transfer::{Fields, interpolate, mean};
+use super::{held_by, renew};
 use crate::bytes::held;
 use crate::math::{Quad, Real, Vector, larger, smaller};
 use crate::parallel::Parallelism;
@@ -66,13 +66,9 @@ impl System {
             &mut self.pressure,
             &mut self.potential,
         ] {
-            column.clear();
-            column.resize(cells, 0.0);
+            renew(column, cells);
         }
-        for faces in &mut self.faces {
-            faces.clear();
-            faces.resize(cells, Quad::ZERO);
-        }
+        self.faces.iter_mut().for_each(|faces| renew(faces, cells));
     }
 
     /// Forgets the last solution.
@@ -103,7 +99,7 @@ impl System {
 
     /// Reads the velocities in and beside the liquid from the sums of the particles.
     pub fn read_flow(&mut self, fields: &Fields, spans: &Spans, parallelism: Parallelism) {
-        spans.each2((&mut self.along_x, &mut self.along_y), parallelism, |first, along_x, along_y| {
+        spans.each2(&mut self.along_x, &mut self.along_y, parallelism, |first, along_x, along_y| {
             let (left, lower) = (&fields.left[first..][..along_x.len()], &fields.lower[first..][..along_x.len()]);
             for k in 0..along_x.len() {
                 (along_x[k], along_y[k]) = (mean(left[k]), mean(lower[k]));
@@ -121,7 +117,7 @@ impl System {
     ) {
         let (stride, depth) = (lattice.stride(), &self.depth);
         let (left, lower) = (&openings.left, &openings.lower);
-        spans.each3((&mut out.right, &mut out.upper, &mut out.air), parallelism, |first, right, upper, air| {
+        spans.each3(&mut out.right, &mut out.upper, &mut out.air, parallelism, |first, right, upper, air| {
             for k in 0..right.len() {
                 let cell = first + k;
                 (right[k], upper[k], air[k]) = (0.0, 0.0, 0.0);
@@ -155,7 +151,7 @@ impl System {
     ) {
         let (depth, curving) = (&self.depth, CURVATURE * 0.5 * dt / lattice.cell);
         let flow = Flow { u: &self.along_x, v: &self.along_y, stride: lattice.stride() };
-        spans.each2((&mut self.divergence, &mut self.excess), parallelism, |first, divergence, excess| {
+        spans.each2(&mut self.divergence, &mut self.excess, parallelism, |first, divergence, excess| {
             for k in 0..divergence.len() {
                 let cell = first + k;
                 (divergence[k], excess[k]) = (0.0, 0.0);
@@ -223,14 +219,9 @@ impl System {
             return 0.0;
         }
         let (nodes, stride) = (lattice.around(place).centre, lattice.stride());
-        let (left, right, low, high) = (1.0 - nodes.right, nodes.right, 1.0 - nodes.up, nodes.up);
         let cells = [nodes.first, nodes.first + 1, nodes.first + stride, nodes.first + stride + 1];
         let (mut sum, mut weights) = (0.0, 0.0);
-        for (cell, weight) in cells
-            .into_iter()
-            .zip([left * low, right * low, left * high, right * high])
-            .filter(|(cell, _)| openings.inverse[*cell] > 0.0)
-        {
+        for (cell, weight) in cells.into_iter().zip(nodes.weights()).filter(|(cell, _)| openings.inverse[*cell] > 0.0) {
             sum += weight * self.pressure[cell];
             weights += weight;
         }

@@ -1,6 +1,7 @@
 //! From particles to the nodes of the grid, and back to any place.
 
 use super::lattice::{Lattice, Nodes};
+use super::renew;
 use crate::bytes::held;
 use crate::math::{Quad, Real, larger, smaller};
 use crate::parallel::{CHUNK_ROWS, Parallelism};
@@ -121,8 +122,7 @@ impl Task {
         let errors = &particles.density_error[self.rows.clone()];
         let (fields, first, stride) = (&mut self.fields, self.cells.start, lattice.stride());
         for sums in [&mut fields.left, &mut fields.lower, &mut fields.centre] {
-            sums.clear();
-            sums.resize(self.cells.len(), [0.0; 2]);
+            renew(sums, self.cells.len());
         }
         let lattice = *lattice;
         let [left, lower, centre] = [&mut fields.left, &mut fields.lower, &mut fields.centre].map(Vec::as_mut_slice);
