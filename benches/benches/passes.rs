@@ -7,12 +7,14 @@ use std::hint::black_box;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use unipbd_benches::Lattice;
-use unipbd_core::neighbors::{Grid, NeighborList, Periodic};
+use unipbd_core::kernel::WendlandC2;
+use unipbd_core::neighbors::{Grid, NeighborList};
 use unipbd_core::parallel::Parallelism;
-use unipbd_core::simd::{
-    DensityInput, DensityOutput, Pairs, Reach, Records, Weights, WendlandC2, correction, density, difference_gradient,
-    laplacian, repulsion, vorticity, xsph, xsph_mixed,
+use unipbd_core::passes::{
+    DensityInput, DensityOutput, Pairs, Reach, Records, Weights, correction, density, difference_gradient, laplacian,
+    repulsion, vorticity, xsph, xsph_mixed,
 };
+use unipbd_core::periodic::Periodic;
 use unipbd_core::{Real, Vector};
 
 const SIZES: [usize; 2] = [10_000, 100_000];

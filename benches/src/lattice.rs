@@ -1,5 +1,6 @@
-use unipbd_core::neighbors::{Grid, NeighborList, Periodic};
+use unipbd_core::neighbors::{Grid, NeighborList};
 use unipbd_core::parallel::Parallelism;
+use unipbd_core::periodic::Periodic;
 use unipbd_core::{Real, Vector};
 
 /// A square block of particles on a lattice of spacing 1, shifted at random by up to a quarter of it,

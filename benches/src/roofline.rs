@@ -7,12 +7,15 @@ use crate::whole::{ScalarStep, Step};
 use std::hint::black_box;
 use std::ops::Deref;
 use std::time::Instant;
-use unipbd_core::neighbors::{Grid, NeighborList, Periodic};
+use unipbd_core::kernel::WendlandC2;
+use unipbd_core::neighbors::{Grid, NeighborList};
 use unipbd_core::parallel::Parallelism::{self, Pool, Serial};
-use unipbd_core::simd::{
-    DensityInput, DensityOutput, Level, Pairs, Reach, Records, Weights, WendlandC2, correction, density,
-    difference_gradient, laplacian, repulsion, vorticity, xsph, xsph_mixed,
+use unipbd_core::passes::{
+    DensityInput, DensityOutput, Pairs, Reach, Records, Weights, correction, density, difference_gradient, laplacian,
+    repulsion, vorticity, xsph, xsph_mixed,
 };
+use unipbd_core::periodic::Periodic;
+use unipbd_core::simd::Level;
 use unipbd_core::{Real, Vector};
 
 /// Kernel radius over spacing.

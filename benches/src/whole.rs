@@ -1,8 +1,10 @@
 //! A whole step, sort and list included, against the same step in plain scalar code.
 
-use unipbd_core::neighbors::{Grid, NeighborList, Periodic};
+use unipbd_core::kernel::WendlandC2;
+use unipbd_core::neighbors::{Grid, NeighborList};
 use unipbd_core::parallel::Parallelism;
-use unipbd_core::simd::{DensityInput, DensityOutput, Pairs, Records, Weights, WendlandC2, correction, density, xsph};
+use unipbd_core::passes::{DensityInput, DensityOutput, Pairs, Records, Weights, correction, density, xsph};
+use unipbd_core::periodic::Periodic;
 use unipbd_core::{Real, Vector};
 
 /// Density iterations per step.
@@ -205,7 +207,7 @@ impl ScalarStep {
 mod tests {
     use super::*;
     use crate::Lattice;
-    use unipbd_core::simd::Shape;
+    use unipbd_core::kernel::Shape;
 
     #[test]
     fn both_steps_list_the_same_pairs_and_find_the_same_densities() {

@@ -1,8 +1,8 @@
 //! An obstacle of any outline is a body of `kind = "static"`: liquids, gas and bodies stay outside of it, also in
 //! its hollows, and the forces of all of them on it can be read.
 
-use unipbd_core::bodies::Body;
 use unipbd_core::math::wide;
+use unipbd_core::rigid::Body;
 use unipbd_core::{Phase, Solver, Vector64};
 use unipbd_tests::{bars, build, run, scene};
 

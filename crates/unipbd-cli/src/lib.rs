@@ -3,6 +3,7 @@
 pub mod args;
 mod commands;
 mod exit;
+pub mod expect;
 mod interrupt;
 pub mod read;
 pub mod record;

@@ -1,9 +1,9 @@
 //! One output frame as plain arrays: what the recorder writes, the log reader returns and the
 //! renderer draws. Row order is arbitrary but the same in all columns.
 
-use unipbd_core::bodies::Body;
 use unipbd_core::observe::WallOutline;
 use unipbd_core::phase::{MaterialIndex, Phase};
+use unipbd_core::rigid::Body;
 
 /// One output frame.
 #[derive(Clone, Debug, Default, PartialEq)]

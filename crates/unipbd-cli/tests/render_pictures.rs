@@ -7,10 +7,10 @@ use unipbd_cli::render::{
     Background, ColorBy, Image, Range, RenderError, RenderOptions, Renderer, Style, Survey, TimeStamp, View,
 };
 use unipbd_cli::snapshot::{Setting, Snapshot};
-use unipbd_core::bodies::{Body, BodyKind, CollisionFilter, Surface};
 use unipbd_core::math::Vector64;
 use unipbd_core::observe::{Material, WallOutline};
 use unipbd_core::phase::Phase;
+use unipbd_core::rigid::{Body, BodyKind, CollisionFilter, Surface};
 
 const WATER: Rgb = [40, 120, 220];
 const OIL: Rgb = [220, 150, 40];

@@ -13,22 +13,23 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod bodies;
 mod build;
 mod bytes;
-mod coarse;
 pub mod constraints;
+mod coupling;
 pub mod edit;
 pub mod effects;
-mod expect;
 pub mod kernel;
 pub mod math;
 pub mod neighbors;
 pub mod observe;
 pub mod parallel;
 pub mod particles;
+pub mod passes;
+pub mod periodic;
 pub mod phase;
-mod rigid;
+mod pressure_grid;
+pub mod rigid;
 mod rng;
 pub mod rows;
 pub mod scene;
@@ -42,7 +43,6 @@ pub mod walls;
 
 pub use build::BuildOptions;
 pub use edit::{Edit, EditError};
-pub use expect::Watch;
 pub use math::{Real, Vector, Vector64};
 pub use phase::{MaterialIndex, Phase};
 pub use state::{State, StateError};

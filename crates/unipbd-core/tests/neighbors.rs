@@ -1,8 +1,10 @@
 //! The grid, the neighbour list and its skin against brute force.
 
 use proptest::prelude::*;
-use unipbd_core::neighbors::{Entries, Grid, LANES, NeighborList, Periodic, PeriodicAxis, SkinList};
+use unipbd_core::neighbors::{Entries, Grid, NeighborList, SkinList};
 use unipbd_core::parallel::{CHUNK_ROWS, Parallelism};
+use unipbd_core::periodic::{Periodic, PeriodicAxis};
+use unipbd_core::simd::LANES;
 use unipbd_core::{Real, Vector};
 
 const PARALLEL_ROWS: usize = 6000;

@@ -3,9 +3,11 @@
 
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::sync::atomic::{AtomicU64, Ordering};
-use unipbd_core::neighbors::{Grid, Periodic, SkinList};
+use unipbd_core::kernel::WendlandC2;
+use unipbd_core::neighbors::{Grid, SkinList};
 use unipbd_core::parallel::Parallelism;
-use unipbd_core::simd::{Pairs, Records, WendlandC2, correction};
+use unipbd_core::passes::{Pairs, Records, correction};
+use unipbd_core::periodic::Periodic;
 use unipbd_core::{Real, Vector};
 
 struct Counting;

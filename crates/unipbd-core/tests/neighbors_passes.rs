@@ -1,12 +1,15 @@
 //! The passes over pairs: every instruction set gives the bits of the scalar form, and the scalar
 //! form is the formula.
 
-use unipbd_core::neighbors::{Grid, NeighborList, Periodic, PeriodicAxis};
+use unipbd_core::kernel::{CubicSpline, Mixed, Poly6, Shape, Spiky, WendlandC2};
+use unipbd_core::neighbors::{Grid, NeighborList};
 use unipbd_core::parallel::Parallelism;
-use unipbd_core::simd::{
-    CubicSpline, DensityInput, DensityOutput, Level, Mixed, Pairs, Poly6, Reach, Records, Shape, Spiky, Weights,
-    WendlandC2, correction, density, difference_gradient, laplacian, repulsion, vorticity, xsph, xsph_mixed,
+use unipbd_core::passes::{
+    DensityInput, DensityOutput, Pairs, Reach, Records, Weights, correction, density, difference_gradient, laplacian,
+    repulsion, vorticity, xsph, xsph_mixed,
 };
+use unipbd_core::periodic::{Periodic, PeriodicAxis};
+use unipbd_core::simd::Level;
 use unipbd_core::{Real, Vector};
 
 const RADIUS: Real = 2.5;

@@ -2,8 +2,8 @@
 
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use unipbd_core::bodies::{Body, BodyKind};
 use unipbd_core::math::Vector64;
+use unipbd_core::rigid::{Body, BodyKind};
 
 use crate::arrays;
 

@@ -6,8 +6,8 @@ use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use unipbd_core::SubstepView;
-use unipbd_core::bodies::{BodyKind, Pose, Twist};
 use unipbd_core::math::{Vector64, vector};
+use unipbd_core::rigid::{BodyKind, Pose, Twist};
 
 use crate::particles::{Particles, checked};
 use crate::{arrays, body, errors};
@@ -76,7 +76,7 @@ impl Wishes {
 
 impl Substep {
     fn new(view: &SubstepView<'_>) -> Self {
-        let seen = |(body, number): (&unipbd_core::bodies::Body, u32)| Seen {
+        let seen = |(body, number): (&unipbd_core::rigid::Body, u32)| Seen {
             name: body.name.clone(),
             kind: body.kind,
             pose: view.body_pose(number),

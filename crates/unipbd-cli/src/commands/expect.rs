@@ -3,8 +3,9 @@
 use std::path::Path;
 use std::time::Instant;
 
+use crate::expect::Watch;
 use serde_json::json;
-use unipbd_core::{BuildOptions, Watch};
+use unipbd_core::BuildOptions;
 
 use super::scene::{build, load};
 use crate::args::ExpectArgs;

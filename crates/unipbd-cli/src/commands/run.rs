@@ -1,7 +1,8 @@
 //! `run`: a scene from start to end.
 
+use crate::expect::Watch;
 use unipbd_core::observe::Diagnostics;
-use unipbd_core::{BuildOptions, SolverError, Watch};
+use unipbd_core::{BuildOptions, SolverError};
 
 use super::recording::Recording;
 use super::scene::{build, load};

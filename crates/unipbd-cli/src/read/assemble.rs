@@ -1,10 +1,10 @@
 //! From messages back to frames.
 
 use prost::Message;
-use unipbd_core::bodies::{Body, BodyKind, CollisionFilter, Surface};
 use unipbd_core::math::Vector64;
 use unipbd_core::observe::{Event, Severity};
 use unipbd_core::phase::{MaterialIndex, Phase};
+use unipbd_core::rigid::{Body, BodyKind, CollisionFilter, Surface};
 
 use super::{DiagnosticsRecord, Frame};
 use crate::record::schema::{Bodies, BodyShape, BodyState, ParticleColumns};

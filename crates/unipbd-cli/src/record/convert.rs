@@ -1,9 +1,9 @@
 //! From what a run shows of itself to messages of our own.
 
-use unipbd_core::bodies::{Body, BodyKind};
 use unipbd_core::math::Vector64;
 use unipbd_core::observe::{self, Diagnostics};
 use unipbd_core::phase::Phase;
+use unipbd_core::rigid::{Body, BodyKind};
 
 use super::schema::{self, Bodies, BodyShape, BodyState, GroupDiagnostics, MaterialDiagnostics, WallForce};
 

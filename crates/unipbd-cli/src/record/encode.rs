@@ -4,9 +4,9 @@ use std::io;
 use std::ops::Range;
 
 use prost::Message;
-use unipbd_core::bodies::Body;
 use unipbd_core::observe::{Diagnostics, Event, Severity};
 use unipbd_core::phase::Phase;
+use unipbd_core::rigid::Body;
 
 use super::convert::{bodies_message, diagnostics_message};
 use super::messages::{self, Level, Log, POINT_STRIDE, PointCloud};

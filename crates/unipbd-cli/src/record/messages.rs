@@ -9,8 +9,8 @@ pub(crate) use foxglove::messages::{
 };
 use foxglove::messages::{PackedElementField, Pose, Vector3};
 use prost::bytes::Bytes;
-use unipbd_core::bodies::Body;
 use unipbd_core::math::Vector64;
+use unipbd_core::rigid::Body;
 
 /// The frame of reference of everything that is not fixed to a body.
 pub(crate) const WORLD: &str = "world";

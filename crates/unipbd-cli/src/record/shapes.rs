@@ -2,9 +2,9 @@
 
 use std::f64::consts::TAU;
 
-use unipbd_core::bodies::Body;
 use unipbd_core::math::Vector64;
 use unipbd_core::observe::WallOutline;
+use unipbd_core::rigid::Body;
 
 use super::messages::{
     LinePrimitive, LineType, SceneEntity, SceneEntityDeletion, SceneUpdate, TriangleListPrimitive, WORLD, body_frame,

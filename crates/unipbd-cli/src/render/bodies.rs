@@ -1,6 +1,6 @@
 use tiny_skia::PathBuilder;
-use unipbd_core::bodies::{Body, BodyKind};
 use unipbd_core::math::Vector64;
+use unipbd_core::rigid::{Body, BodyKind};
 
 use super::color::{self, Rgb};
 use super::image::Image;

@@ -5,11 +5,11 @@ use std::f64::consts::TAU;
 use unipbd_cli::record::Header;
 use unipbd_cli::snapshot::{Setting, Snapshot};
 use unipbd_core::Vector64;
-use unipbd_core::bodies::{Body, BodyKind, CollisionFilter, Surface};
 use unipbd_core::observe::{
     Diagnostics, Event, GroupDiagnostics, Material, MaterialDiagnostics, Severity, WallOutline,
 };
 use unipbd_core::phase::Phase;
+use unipbd_core::rigid::{Body, BodyKind, CollisionFilter, Surface};
 
 /// A run with a liquid, gas, smoke, walls and two bodies.
 pub fn header() -> Header {

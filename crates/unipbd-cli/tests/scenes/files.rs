@@ -1,7 +1,8 @@
 //! Every scene file: sound, explained, and as good as its word.
 
+use unipbd_cli::expect::Watch;
+use unipbd_core::BuildOptions;
 use unipbd_core::scene::Expect;
-use unipbd_core::{BuildOptions, Watch};
 
 use crate::support::scenes;
 

@@ -1,15 +1,16 @@
 //! Bodies, joints and walls of a scene as the contact solver takes them.
 
 use super::carve::Solid;
-use crate::bodies::{
+use crate::math::Vector64;
+use crate::rigid::Wall;
+use crate::rigid::contact::{ContactSettings, Contacts, DistanceRule, Joint, JointKind, Motor};
+use crate::rigid::{
     Bodies, BodySpec, CollisionFilter, Elasticity, MassSpec, Motion, Pose, Repeat, Rotation, Surface, Twist, Waypoint,
 };
-use crate::constraints::contact::{ContactSettings, Contacts, DistanceRule, Joint, JointKind, Motor};
-use crate::math::Vector64;
 use crate::scene::{
     BodyDescription, BodySolver, JointDescription, JointRule, MotionDescription, Rope, RotationRule, Scene, Side,
 };
-use crate::shapes::{Shape, Wall};
+use crate::shapes::Shape;
 
 /// Corners of a disc whose shape is matched.
 const ROUND: usize = 48;
@@ -48,7 +49,7 @@ pub(super) fn build(scene: &Scene) -> (Bodies, Contacts) {
 pub(super) fn solids(scene: &Scene) -> Vec<Solid> {
     let specs = scene.body.iter().enumerate().flat_map(|(number, description)| specifications(description, number));
     let start = |spec: BodySpec| {
-        let moves = spec.kind == crate::bodies::BodyKind::Kinematic;
+        let moves = spec.kind == crate::rigid::BodyKind::Kinematic;
         let pose = if moves { spec.motion.pose(spec.pose, 0.0) } else { spec.pose };
         Solid { shape: spec.shape.tidied(), pose }
     };

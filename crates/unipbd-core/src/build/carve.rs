@@ -1,7 +1,7 @@
 //! Room for bodies: what fills a scene at the start stays outside of them.
 
-use crate::bodies::Pose;
 use crate::math::Vector64;
+use crate::rigid::Pose;
 use crate::shapes::Shape;
 
 /// Centres at least this many spacings outside a body are kept: its own samples begin half a spacing inside.

@@ -7,7 +7,6 @@
 
 mod adhesion;
 mod batch;
-pub mod contact;
 mod corrections;
 mod density;
 mod distance;
@@ -29,8 +28,8 @@ use crate::math::{Real, Vector};
 use crate::neighbors::Neighbors;
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
+use crate::passes::Pairs;
 use crate::rows::RowIndex;
-use crate::simd::Pairs;
 use crate::walls::Walls;
 
 /// What a group needs from the loop; what nobody needs is not computed.

@@ -1,10 +1,10 @@
 //! Whether an edit can be made as a whole.
 
 use super::{Change, Edit, EditError, Points, Values};
-use crate::bodies::{BodyKind, Twist};
 use crate::math::Vector64;
 use crate::observe::Material;
 use crate::phase::Phase;
+use crate::rigid::{BodyKind, Twist};
 use crate::scene::{FARTHEST, PointMotion};
 use crate::step::{ABSURD_SPEED, Solver};
 

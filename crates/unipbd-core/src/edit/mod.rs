@@ -16,8 +16,8 @@ mod error;
 
 pub use error::EditError;
 
-use crate::bodies::Twist;
 use crate::math::Vector64;
+use crate::rigid::Twist;
 use crate::scene::PointMotion;
 
 /// Changes to make at once with [`Solver::apply`](crate::Solver::apply). Values are set first, then

@@ -3,8 +3,8 @@ use crate::bytes::held;
 use crate::constraints::Substep;
 use crate::kernel::Kernel;
 use crate::math::{Real, real};
+use crate::passes::{self, Weights};
 use crate::scene::Scene;
-use crate::simd::{self, Weights};
 
 /// Conduction of heat between gas particles, the SPH Laplacian of Brookshaw 1985:
 /// dT_i/dt = sum_j 2 V kappa_ij (T_i - T_j) g_ij, with grad W = g x and kappa_ij the geometric mean of
@@ -51,7 +51,7 @@ impl Effect for Conduction {
         now.parallelism.fill(weights, root);
         let weights = Weights::Column(&self.weights);
         let (shape, temperatures) = (self.kernel.shape(), particles.temperatures());
-        simd::laplacian(now.pairs(), shape, particles.positions(), temperatures, weights, &mut self.sums);
+        passes::laplacian(now.pairs(), shape, particles.positions(), temperatures, weights, &mut self.sums);
         let (sums, factor) = (&self.sums, now.dt * 2.0 * self.volume);
         now.parallelism.update(&mut out.temperature, |row, change| *change += factor * root(row) * sums[row]);
     }

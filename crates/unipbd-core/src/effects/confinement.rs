@@ -3,8 +3,8 @@ use crate::bytes::held;
 use crate::constraints::Substep;
 use crate::kernel::Kernel;
 use crate::math::{Real, Vector, real};
+use crate::passes::{self, Records};
 use crate::scene::Scene;
-use crate::simd::{self, Records};
 
 /// Part of the mean vorticity per spacing below which its gradient has no clear direction.
 const SOFTENING: Real = 0.02;
@@ -48,7 +48,7 @@ impl VorticityConfinement {
         self.gradient.resize(rows, Vector::ZERO);
         let (positions, velocities) = (now.particles.positions(), now.particles.velocities());
         let (shape, records) = (self.kernel.shape(), &mut self.records);
-        simd::vorticity(now.pairs(), shape, positions, velocities, records, &mut self.vorticity);
+        passes::vorticity(now.pairs(), shape, positions, velocities, records, &mut self.vorticity);
         let (vorticity, volume) = (&mut self.vorticity, self.volume);
         now.parallelism.update(vorticity, |_, vorticity| *vorticity *= volume);
         let vorticity = &self.vorticity;
@@ -75,7 +75,7 @@ impl Effect for VorticityConfinement {
             return;
         }
         let positions = now.particles.positions();
-        simd::difference_gradient(now.pairs(), self.kernel.shape(), positions, &self.size, &mut self.gradient);
+        passes::difference_gradient(now.pairs(), self.kernel.shape(), positions, &self.size, &mut self.gradient);
         let (materials, gradients) = (now.particles.materials(), &self.gradient);
         now.parallelism.update(&mut out.velocity, |row, change| {
             let strength = self.strength[usize::from(materials[row])];

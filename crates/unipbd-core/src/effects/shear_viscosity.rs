@@ -2,10 +2,11 @@ use super::{Changes, Effect, any};
 use crate::bytes::held;
 use crate::constraints::Substep;
 use crate::kernel::Kernel;
+use crate::kernel::SlopeAsValue;
 use crate::math::{Real, Vector, real};
+use crate::passes::{self, Records, Weights};
 use crate::phase::Phase;
 use crate::scene::{MaterialRef, Scene};
-use crate::simd::{self, Records, SlopeAsValue, Weights};
 use crate::walls::Coverage;
 
 /// Most stages of one substep: stable up to 136 times the step of the explicit rule.
@@ -71,7 +72,7 @@ impl ShearViscosity {
         let particles = now.particles;
         let shape = SlopeAsValue(self.kernel.shape());
         let weights = Weights::Column(&self.weights);
-        simd::xsph(now.pairs(), shape, particles.positions(), &self.now, weights, &mut self.records, &mut self.sums);
+        passes::xsph(now.pairs(), shape, particles.positions(), &self.now, weights, &mut self.records, &mut self.sums);
         let shear = now.walls.any_without_slip();
         let (weights, velocities, coverage) = (&self.weights, &self.now, &self.coverage);
         let (inverse_density, materials) = (&self.inverse_density, particles.materials());

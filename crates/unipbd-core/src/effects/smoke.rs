@@ -1,11 +1,12 @@
 use crate::constraints::Substep;
 use crate::kernel::Kernel;
+use crate::kernel::WendlandC2;
 use crate::math::{Real, Vector};
+use crate::neighbors::near::{self, Near, Work};
+use crate::neighbors::weigh::{At, Weighed};
 use crate::scene::Scene;
-use crate::simd::near::{self, Near, Work};
+use crate::simd::Level;
 use crate::simd::space::{Open, Space, Wrapped};
-use crate::simd::weigh::{At, Weighed};
-use crate::simd::{Level, WendlandC2};
 
 /// Smoke moves with the carrier around it (Macklin et al. 2014, equation 28):
 /// v_s = sum_j v_j W_sj / sum_j W_sj over the dense particles; without any, it keeps its velocity.

@@ -3,8 +3,8 @@ use crate::bytes::held;
 use crate::constraints::Substep;
 use crate::kernel::Kernel;
 use crate::math::{Real, Vector, real};
+use crate::passes::{self, Records, Weights};
 use crate::scene::{MaterialRef, Scene};
-use crate::simd::{self, Records, Weights};
 
 /// XSPH viscosity (Schechter & Bridson 2012; Macklin & Müller 2013, equation 17):
 /// v_i += c sum_j V (v_j - v_i) W_ij, with the reduced mass of each pair so that momentum is kept.
@@ -67,7 +67,7 @@ impl Viscosity {
     fn apply_uniform(&mut self, now: Substep<'_>, strength: Real, out: &mut Changes) {
         let (positions, velocities) = (now.particles.positions(), now.particles.velocities());
         let weights = Weights::Uniform(self.volume * strength);
-        simd::xsph(
+        passes::xsph(
             now.pairs(),
             self.kernel.shape(),
             positions,
@@ -87,6 +87,6 @@ impl Viscosity {
             .fill(traits, |row| Vector::new(self.volume * strength[usize::from(materials[row])], inverse_masses[row]));
         let (positions, velocities) = (particles.positions(), particles.velocities());
         let (traits, records) = (&self.traits, &mut self.records);
-        simd::xsph_mixed(now.pairs(), self.kernel.shape(), positions, velocities, traits, records, &mut out.velocity);
+        passes::xsph_mixed(now.pairs(), self.kernel.shape(), positions, velocities, traits, records, &mut out.velocity);
     }
 }

@@ -1,8 +1,8 @@
 //! From coordinates to cells. The plane is cut into rows as high as the search radius, and each row
 //! into narrower bins, so that a search reads one stretch of each of three rows.
 
-use super::periodic::{Periodic, PeriodicAxis};
 use crate::math::{Real, Vector};
+use crate::periodic::{Periodic, PeriodicAxis};
 
 /// Bins per row height: narrow bins keep the stretches of a row tight.
 const BINS_PER_ROW_HEIGHT: Real = 4.0;

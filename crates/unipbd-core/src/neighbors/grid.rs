@@ -2,11 +2,11 @@
 
 use super::cells::{Cells, Span};
 use super::order::{CountingSort, Extent};
-use super::periodic::Periodic;
 use super::sparse::SparseIndex;
 use crate::bytes::held;
 use crate::math::{Real, Vector};
 use crate::parallel::Parallelism;
+use crate::periodic::Periodic;
 use std::ops::Range;
 
 /// A table of all cells of the bounding box is used up to this many cells per row...

@@ -9,14 +9,11 @@
 use super::grid::{Cursor, Grid};
 use crate::bytes::held;
 use crate::math::{Real, Vector};
+use crate::neighbors::near::{self, Found, Near, Work};
 use crate::parallel::{CHUNK_ROWS, Parallelism};
-use crate::simd::Level;
-use crate::simd::near::{self, Found, Near, Work};
 use crate::simd::space::{Open, Space, Wrapped};
+use crate::simd::{LANES, Level};
 use std::ops::Range;
-
-/// Rows in a block.
-pub const LANES: usize = 8;
 
 /// The list of one block.
 #[derive(Clone, Copy, Debug)]
@@ -356,7 +353,7 @@ fn make_room<T>(columns: &mut Vec<T>, more: usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::neighbors::{Periodic, PeriodicAxis};
+    use crate::periodic::{Periodic, PeriodicAxis};
 
     fn columns(list: &NeighborList) -> Vec<([u32; LANES], Vec<[i32; LANES]>)> {
         let blocks = list.chunks.iter().flat_map(|chunk| chunk.blocks.iter().map(move |block| (chunk, block)));

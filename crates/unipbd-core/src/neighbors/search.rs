@@ -1,10 +1,11 @@
 //! The neighbour search of a run: grid, list and skin, kept valid while particles move.
 
-use super::{Cursor, Grid, ListCost, Motion, NeighborList, Periodic, SkinList};
+use super::{Cursor, Grid, ListCost, Motion, NeighborList, SkinList};
 use crate::bytes::{Damage, Reader, Writer, held};
 use crate::math::{Real, Vector};
 use crate::parallel::Parallelism;
 use crate::particles::{Particles, Scratch};
+use crate::periodic::Periodic;
 use std::ops::Range;
 
 /// For which positions a list must hold.

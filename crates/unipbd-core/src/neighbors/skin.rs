@@ -5,12 +5,12 @@
 //! from its reference and c any common drift, |d_i - d_j| <= 2 max |d - c|, so the list holds while
 //! 2 max |d - c| <= skin: a body of fluid that only travels needs no new list.
 
-use super::Periodic;
 use super::grid::{Cursor, Grid};
 use super::list::NeighborList;
 use crate::bytes::held;
 use crate::math::{Real, Vector, larger};
 use crate::parallel::{GROUP, Parallelism, Spread};
+use crate::periodic::Periodic;
 use std::ops::Range;
 
 /// How particles have moved since a list was built.

@@ -1,6 +1,17 @@
 use serde::{Deserialize, Serialize};
 
-use crate::bodies::BodyKind;
+/// How a body moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum BodyKind {
+    /// Moved by forces and contacts.
+    Dynamic,
+    /// Moved by a script, whatever pushes it.
+    Kinematic,
+    /// Never moves.
+    Static,
+}
 
 /// A rigid body. Its outline is one of `radius`, `size` and `outline`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

@@ -20,13 +20,14 @@ mod ropes;
 mod settings;
 mod shorthand;
 mod sources;
-mod substeps;
+mod substep_law;
 mod validate;
 mod walls;
 mod waves;
 
 pub use bodies::{
-    BodyDescription, BodySolver, Copies, Heap, JointDescription, JointRule, MotionDescription, RotationRule, Station,
+    BodyDescription, BodyKind, BodySolver, Copies, Heap, JointDescription, JointRule, MotionDescription, RotationRule,
+    Station,
 };
 pub use contacts::{ContactDescription, ContactMethod};
 pub use description::{Domain, Environment, Scene, View};
@@ -45,5 +46,5 @@ pub use walls::{HalfPlane, Obstacle, Side, Slip, Tank};
 pub use waves::Wave;
 
 pub(crate) use layout::{block_points, disc_points};
-pub(crate) use substeps::SubstepLaw;
+pub(crate) use substep_law::SubstepLaw;
 pub(crate) use validate::FARTHEST;

@@ -1,7 +1,7 @@
 //! Short ways to write scenes in Rust.
 
 use super::{Block, BodyDescription, BodySolver, HalfPlane, Liquid, Obstacle, RotationRule, Side, Slip, Smoke, Tank};
-use crate::bodies::BodyKind;
+use crate::scene::BodyKind;
 
 impl Liquid {
     /// A liquid of this rest density [kg/m^2], everything else as by default.

@@ -5,14 +5,12 @@ mod core_pieces;
 mod decompose;
 mod polygon;
 mod sampling;
-mod wall;
 
 pub use core_pieces::{ConvexPiece, Core};
 pub use decompose::convex_decomposition;
 pub use polygon::Moments;
 pub(crate) use polygon::{first_crossing, nearest as nearest_on_polygon};
 pub use sampling::Samples;
-pub use wall::{Boundary, Wall};
 
 use crate::math::Vector64;
 use std::f64::consts::{PI, TAU};

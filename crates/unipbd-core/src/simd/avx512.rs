@@ -4,18 +4,18 @@
 //! because an unsafe function of [`Turn`] made it, whose caller vouched for AVX2, AVX-512F and AVX-512VL.
 #![allow(unsafe_code)]
 
+use super::LANES;
+use super::Number;
+use super::Record;
 use super::lanes::{ColumnPair, Entry, Turn};
-use super::records::Record;
-use super::shapes::Number;
 use super::x86::{Avx2, pair, record};
-use crate::neighbors::LANES;
 use glam::Vec2;
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Sub};
 
 /// The first column in the low half, the second in the high one.
 #[derive(Clone, Copy)]
-pub(super) struct Avx512(__m512);
+pub(crate) struct Avx512(__m512);
 
 macro_rules! operations {
     ($($operation:ident $name:ident $whole:ident)*) => {$(

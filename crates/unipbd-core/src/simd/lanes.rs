@@ -1,14 +1,14 @@
 //! Lanes of f32: eight rows, and eight rows by two columns, which the lane forms of the passes are written in.
 #![allow(unsafe_code)]
 
-use super::records::Record;
-use super::shapes::Number;
-use crate::neighbors::LANES;
+use super::LANES;
+use super::Number;
+use super::Record;
 use glam::Vec2;
 use std::ops::{Add, Div, Mul, Sub};
 
 /// An entry of the neighbour list, relative to the first row of its block.
-pub(super) trait Entry: Copy {
+pub(crate) trait Entry: Copy {
     fn offset(self) -> isize;
 }
 
@@ -30,7 +30,7 @@ impl Entry for i32 {
 ///
 /// Values come into being only through the unsafe functions, whose caller vouches that the machine
 /// has the instruction set; so the safe operations, which need a value, are sound.
-pub(super) trait Lanes: Number {
+pub(crate) trait Lanes: Number {
     /// Eight counts, to be compared with a column number.
     type Counts: Copy;
 
@@ -84,13 +84,13 @@ pub(super) trait Lanes: Number {
 }
 
 /// The entries of two columns of the list.
-pub(super) type ColumnPair<E> = [[E; LANES]; 2];
+pub(crate) type ColumnPair<E> = [[E; LANES]; 2];
 
 /// What a turn of the loop over columns works on: a number for each of eight rows in each of two columns.
 /// From loads to sums is a long chain, and two columns overlap better than one.
 ///
 /// As for [`Lanes`], a value proves the instruction set.
-pub(super) trait Turn: Number {
+pub(crate) trait Turn: Number {
     /// The eight sums of the rows.
     type Sums: Lanes;
     /// Eight counts of the neighbours that are left.
@@ -141,7 +141,7 @@ pub(super) trait Turn: Number {
 
 /// A turn as two vectors of lanes.
 #[derive(Clone, Copy)]
-pub(super) struct Two<F>(F, F);
+pub(crate) struct Two<F>(F, F);
 
 macro_rules! column_by_column {
     ($($operation:ident $name:ident)*) => {$(

@@ -1,38 +1,28 @@
-//! The passes over all pairs of neighbours: where a step spends its time.
+//! Instruction sets: eight lanes of f32 in the vectors of each of them, and the choice at run time.
 //!
-//! Each pass is one function over plain columns. It picks the widest instruction set of the machine
-//! once per chunk of rows and works on eight rows at a time, straight from the blocks of the
-//! [`NeighborList`]. Beside its lane form every pass has a scalar form, which is what it computes:
-//! all forms give the same bits, because none of them fuses or reorders an operation, and square
-//! roots and quotients are exact everywhere. With the `f64` feature only the scalar forms exist.
-//!
-//! In the formulas x_ij = x_i - x_j (the shortest image of it), W is the kernel and grad W = g x_ij
-//! its gradient at x_i. A row's own contribution W(0) is left out.
+//! All forms give the same bits, because none of them fuses or reorders an operation, and square roots and
+//! quotients are exactly rounded everywhere. With the `f64` feature only scalars exist.
 
-pub(crate) mod near;
-mod passes;
-mod records;
-mod shapes;
+#[cfg(all(target_arch = "x86_64", not(feature = "f64")))]
+pub(crate) mod avx512;
+#[cfg(not(feature = "f64"))]
+pub(crate) mod lanes;
+mod number;
+#[cfg(not(feature = "f64"))]
+pub(crate) mod portable;
 pub(crate) mod space;
-pub(crate) mod weigh;
-
 #[cfg(all(target_arch = "x86_64", not(feature = "f64")))]
-mod avx512;
-#[cfg(not(feature = "f64"))]
-mod lanes;
-#[cfg(not(feature = "f64"))]
-mod portable;
-#[cfg(not(feature = "f64"))]
-mod run;
-#[cfg(all(target_arch = "x86_64", not(feature = "f64")))]
-mod x86;
+pub(crate) mod x86;
 
-pub use passes::{
-    DensityInput, DensityOutput, Pairs, Reach, Weights, correction, density, difference_gradient, laplacian, repulsion,
-    vorticity, xsph, xsph_mixed,
-};
-pub use records::Records;
-pub use shapes::{Alternative, CubicSpline, Mixed, Number, Poly6, Shape, SlopeAsValue, Spiky, Tensile, WendlandC2};
+pub use number::Number;
+
+use crate::math::Vector;
+
+/// Rows in a block.
+pub const LANES: usize = 8;
+
+/// Two vectors of one row, which are fetched by one load.
+pub(crate) type Record = [Vector; 2];
 
 /// An instruction set that passes are compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

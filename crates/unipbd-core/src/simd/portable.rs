@@ -1,17 +1,17 @@
 //! Lanes as plain arrays, for machines without a form of their own.
 #![allow(unsafe_code)]
 
+use super::LANES;
+use super::Number;
+use super::Record;
 use super::lanes::{Entry, Lanes};
-use super::records::Record;
-use super::shapes::Number;
-use crate::neighbors::LANES;
 use glam::Vec2;
 use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Sub};
 
 /// An array of eight.
 #[derive(Clone, Copy)]
-pub(super) struct Portable([f32; LANES]);
+pub(crate) struct Portable([f32; LANES]);
 
 macro_rules! lane_by_lane {
     ($($operation:ident $name:ident)*) => {$(

@@ -1,8 +1,8 @@
 //! Differences of points, in an open or a periodic domain.
 
-use super::shapes::Number;
+use super::Number;
 use crate::math::Real;
-use crate::neighbors::{Periodic, PeriodicAxis};
+use crate::periodic::{Periodic, PeriodicAxis};
 
 /// Turns a difference of coordinates into that of the nearest images.
 pub(crate) trait Space: Copy + Send + Sync {

@@ -5,21 +5,21 @@
 //! vouched for AVX2; so operations on values are sound. SSE2 is part of the x86-64 baseline.
 #![allow(unsafe_code)]
 
+use super::LANES;
+use super::Number;
+use super::Record;
 use super::lanes::{Entry, Lanes};
-use super::records::Record;
-use super::shapes::Number;
-use crate::neighbors::LANES;
 use glam::Vec2;
 use std::arch::x86_64::*;
 use std::ops::{Add, Div, Mul, Sub};
 
 /// Two vectors of four.
 #[derive(Clone, Copy)]
-pub(super) struct Sse2(__m128, __m128);
+pub(crate) struct Sse2(__m128, __m128);
 
 /// One vector of eight.
 #[derive(Clone, Copy)]
-pub(super) struct Avx2(pub(super) __m256);
+pub(crate) struct Avx2(pub(crate) __m256);
 
 macro_rules! operations {
     ($($operation:ident $name:ident $half:ident $whole:ident)*) => {$(
@@ -60,7 +60,7 @@ fn select(mask: __m128, yes: __m128, no: __m128) -> __m128 {
 /// # Safety
 /// Both places are readable vectors.
 #[inline(always)]
-pub(super) unsafe fn pair<E: Entry>(base: *const Vec2, low: E, high: E) -> __m128 {
+pub(crate) unsafe fn pair<E: Entry>(base: *const Vec2, low: E, high: E) -> __m128 {
     // SAFETY: a Vec2 is two f32 without padding, so 64 bits may be read at each place; the loads ask
     // for no alignment.
     unsafe {
@@ -74,7 +74,7 @@ pub(super) unsafe fn pair<E: Entry>(base: *const Vec2, low: E, high: E) -> __m12
 /// # Safety
 /// The place is a readable record.
 #[inline(always)]
-pub(super) unsafe fn record<E: Entry>(base: *const Record, entry: E) -> __m128 {
+pub(crate) unsafe fn record<E: Entry>(base: *const Record, entry: E) -> __m128 {
     // SAFETY: a record is four f32 without padding; the load asks for no alignment.
     unsafe { _mm_loadu_ps(base.offset(entry.offset()).cast()) }
 }
@@ -295,7 +295,7 @@ impl Avx2 {
     /// # Safety
     /// The machine has AVX2, and eight vectors may be read.
     #[inline(always)]
-    pub(super) unsafe fn deinterleaved(vectors: *const Vec2) -> (Self, Self) {
+    pub(crate) unsafe fn deinterleaved(vectors: *const Vec2) -> (Self, Self) {
         // SAFETY: passed on to the caller; the loads ask for no alignment.
         unsafe {
             let (first, second) = (_mm256_loadu_ps(vectors.cast()), _mm256_loadu_ps(vectors.add(4).cast()));
@@ -309,7 +309,7 @@ impl Avx2 {
 
     /// A bit for each lane below `limit`.
     #[inline(always)]
-    pub(super) fn bits_below(self, limit: Self) -> u32 {
+    pub(crate) fn bits_below(self, limit: Self) -> u32 {
         // SAFETY: a value of this type proves AVX2.
         unsafe { _mm256_movemask_ps(_mm256_cmp_ps::<_CMP_LT_OQ>(self.0, limit.0)) as u32 }
     }

@@ -1,7 +1,7 @@
 //! Square blocks of the plane, and what was measured in each.
 
 use crate::math::{Real, Vector};
-use crate::neighbors::{Periodic, PeriodicAxis};
+use crate::periodic::{Periodic, PeriodicAxis};
 use std::collections::HashMap;
 
 /// Column and row of a block.

@@ -13,8 +13,8 @@
 mod blocks;
 
 use crate::math::{Real, Vector, real};
-use crate::neighbors::Periodic;
 use crate::particles::Particles;
+use crate::periodic::Periodic;
 use crate::phase::Phase;
 use crate::scene::Scene;
 use blocks::{Blocks, Key, Layout};

@@ -2,9 +2,10 @@
 
 use super::sink::RegionSink;
 use crate::math::{Real, Vector, Vector64, real, vector};
-use crate::neighbors::{Cursor, Grid, Periodic};
+use crate::neighbors::{Cursor, Grid};
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
+use crate::periodic::Periodic;
 use crate::phase::Phase;
 use crate::scene::{MaterialRef, Scene};
 

@@ -2,7 +2,7 @@
 
 use super::StateError;
 use super::error::damaged;
-use crate::rigid::RigidBodies;
+use crate::coupling::RigidBodies;
 
 /// The bodies as words: the number of bytes, then the bytes.
 pub(super) fn to_words(rigid: &RigidBodies) -> Vec<u64> {

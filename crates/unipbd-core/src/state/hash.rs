@@ -1,9 +1,9 @@
 //! The state of a run as one number.
 
-use crate::bodies::Body;
 use crate::math::{Real, Vector};
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
+use crate::rigid::Body;
 use crate::rng::mix;
 use crate::step::Solver;
 

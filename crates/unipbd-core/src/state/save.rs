@@ -1,8 +1,8 @@
 use super::error::damaged;
 use super::structure::structure;
 use super::{Section, State, StateError, bodies};
+use crate::coupling::RigidBodies;
 use crate::math::real;
-use crate::rigid::RigidBodies;
 use crate::step::{Clock, Solver};
 
 const EMITTERS: &str = "emitters";

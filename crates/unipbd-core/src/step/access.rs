@@ -3,11 +3,11 @@
 use std::time::Duration;
 
 use super::Solver;
-use crate::bodies::Body;
 use crate::math::{Real, Vector};
 use crate::observe::{Event, Material, WallForce, WallOutline};
 use crate::particles::Particles;
 use crate::phase::{MaterialIndex, Phase};
+use crate::rigid::Body;
 
 impl Solver {
     /// Simulated time [s].

@@ -2,10 +2,10 @@
 
 use super::world::World;
 use super::{Solver, Stage};
-use crate::bodies::BodyKind;
 use crate::math::{Real, Vector64, wide};
 use crate::observe::{Diagnostics, GroupDiagnostics, MaterialDiagnostics, WallForce};
 use crate::phase::Phase;
+use crate::rigid::BodyKind;
 
 /// Sums over a stretch of rows, combined in a fixed order.
 #[derive(Clone, Copy, Default)]

@@ -6,9 +6,9 @@
 
 use crate::constraints::Corrections;
 use crate::math::{Real, Vector, larger, wide};
-use crate::neighbors::Periodic;
 use crate::parallel::{CHUNK_ROWS, Parallelism};
 use crate::particles::Particles;
+use crate::periodic::Periodic;
 use crate::phase::{Phase, uniform};
 use crate::walls::{Hit, Walls};
 use std::ops::Range;

@@ -1,7 +1,6 @@
 //! The solver loop. `pipeline.rs` is the page to read first: the stages of a substep and when they run.
 
 mod access;
-mod demand;
 mod diagnose;
 mod error;
 mod integrate;
@@ -10,7 +9,6 @@ mod sleep;
 mod solver;
 mod stages;
 mod substeps;
-mod survey;
 mod threads;
 mod timings;
 mod view;

@@ -1,8 +1,8 @@
 use super::world::World;
-use crate::bodies::{Bodies, Body, Pose, Twist};
 use crate::math::{Real, Vector, Vector64};
 use crate::observe::Material;
 use crate::particles::Particles;
+use crate::rigid::{Bodies, Body, Pose, Twist};
 
 /// A run at the start of a substep, as a hook sees it
 /// (see [`Solver::step_frame_with`](crate::Solver::step_frame_with)).

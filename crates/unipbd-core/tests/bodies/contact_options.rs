@@ -2,9 +2,10 @@
 
 use super::world::{FRAME, GRAVITY, World, at, body, floor, never_asleep, unit_box};
 use unipbd_core::Vector64;
-use unipbd_core::bodies::{BodySpec, Pose, Surface, Twist};
-use unipbd_core::constraints::contact::{ContactMethod, ContactSettings};
-use unipbd_core::shapes::{Shape, Wall};
+use unipbd_core::rigid::Wall;
+use unipbd_core::rigid::contact::{ContactMethod, ContactSettings};
+use unipbd_core::rigid::{BodySpec, Pose, Surface, Twist};
+use unipbd_core::shapes::Shape;
 
 fn averaged(relaxation: f64) -> ContactSettings {
     ContactSettings { method: ContactMethod::Averaged, relaxation, ..never_asleep() }
@@ -53,7 +54,7 @@ fn averaged_contacts_keep_linear_and_angular_momentum() {
     }
     let angular = |world: &World| -> f64 {
         let of =
-            |b: &unipbd_core::bodies::Body| b.mass * b.position.perp_dot(b.velocity) + b.inertia * b.angular_velocity;
+            |b: &unipbd_core::rigid::Body| b.mass * b.position.perp_dot(b.velocity) + b.inertia * b.angular_velocity;
         world.bodies.views().iter().map(of).sum()
     };
     let scale: f64 = world.bodies.views().iter().map(|b| b.mass * b.velocity.length()).sum();

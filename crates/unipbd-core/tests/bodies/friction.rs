@@ -1,7 +1,8 @@
 use super::world::{FRAME, GRAVITY, World, at, body, unit_box};
 use unipbd_core::Vector64;
-use unipbd_core::bodies::{BodySpec, Pose, Surface};
-use unipbd_core::shapes::{Shape, Wall};
+use unipbd_core::rigid::Wall;
+use unipbd_core::rigid::{BodySpec, Pose, Surface};
+use unipbd_core::shapes::Shape;
 
 /// A slope that falls towards +x, with one body resting on it.
 fn on_slope(tangent: f64, shape: Shape, height: f64, surface: Surface) -> (World, f64) {
@@ -60,7 +61,7 @@ fn sticking_and_sliding_coefficients_differ() {
     assert!(gone(&resting, angle).abs() < 1e-3, "between the two a block at rest stays");
     let (mut moving, angle) = box_on_slope(0.5, surface);
     let down = Vector64::from_angle(angle);
-    moving.bodies.set_velocity(0, unipbd_core::bodies::Twist { linear: down, angular: 0.0 });
+    moving.bodies.set_velocity(0, unipbd_core::rigid::Twist { linear: down, angular: 0.0 });
     moving.run(1.0);
     let gained = moving.velocity(0).linear.dot(down) - 1.0;
     let exact = GRAVITY * (angle.sin().abs() - 0.4 * angle.cos());

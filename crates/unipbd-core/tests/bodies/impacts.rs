@@ -1,7 +1,8 @@
 use super::world::{FRAME, GRAVITY, World, at, body, floor, unit_box};
 use unipbd_core::Vector64;
-use unipbd_core::bodies::{BodyKind, BodySpec, Motion, Surface, Twist};
-use unipbd_core::shapes::{Shape, Wall};
+use unipbd_core::rigid::Wall;
+use unipbd_core::rigid::{BodyKind, BodySpec, Motion, Surface, Twist};
+use unipbd_core::shapes::Shape;
 
 fn smooth() -> Surface {
     Surface::with_friction(0.0)
@@ -63,7 +64,7 @@ fn colliding_boxes_keep_linear_and_angular_momentum() {
     }
     let angular = |world: &World| -> f64 {
         let of =
-            |b: &unipbd_core::bodies::Body| b.mass * b.position.perp_dot(b.velocity) + b.inertia * b.angular_velocity;
+            |b: &unipbd_core::rigid::Body| b.mass * b.position.perp_dot(b.velocity) + b.inertia * b.angular_velocity;
         world.bodies.views().iter().map(of).sum()
     };
     let scale: f64 = world.bodies.views().iter().map(|b| b.mass * b.velocity.length()).sum();

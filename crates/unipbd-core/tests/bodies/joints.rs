@@ -1,8 +1,8 @@
 use super::world::{FRAME, GRAVITY, World, at, body, unit_box};
 use unipbd_core::Vector64;
-use unipbd_core::bodies::{BodySpec, Rotation};
-use unipbd_core::bodies::{MassSpec, Surface};
-use unipbd_core::constraints::contact::{DistanceRule, Joint, JointKind, Motor};
+use unipbd_core::rigid::contact::{DistanceRule, Joint, JointKind, Motor};
+use unipbd_core::rigid::{BodySpec, Rotation};
+use unipbd_core::rigid::{MassSpec, Surface};
 use unipbd_core::shapes::Shape;
 
 fn hinge(motor: Option<Motor>) -> JointKind {
@@ -75,7 +75,7 @@ fn spinning_wheel_on_a_hinge_beside_its_centre_keeps_its_energy() {
     world.gravity = Vector64::ZERO;
     let spin = 12.0;
     let mut spec = unit_box(at(1.0, 0.0));
-    spec.velocity = unipbd_core::bodies::Twist { linear: at(0.0, spin), angular: spin };
+    spec.velocity = unipbd_core::rigid::Twist { linear: at(0.0, spin), angular: spin };
     world.add(spec);
     world.contacts.add_joint(to_world(0, at(-1.0, 0.0), at(0.0, 0.0), hinge(None)));
     world.run(10.0);

@@ -1,6 +1,7 @@
 use super::world::{GRAVITY, World, at, body, floor, unit_box};
-use unipbd_core::bodies::{BodySpec, MassSpec, Surface};
-use unipbd_core::shapes::{Shape, Wall};
+use unipbd_core::rigid::Wall;
+use unipbd_core::rigid::{BodySpec, MassSpec, Surface};
+use unipbd_core::shapes::Shape;
 
 /// Boxes on each other, sideways out of line by up to `offset` [m], `gap` apart [m].
 fn stack(height: u32, offset: f64, gap: f64) -> World {

@@ -1,7 +1,8 @@
 use super::world::{World, at, body, floor};
 use unipbd_core::Vector64;
-use unipbd_core::bodies::{BodyKind, BodySpec, Motion, Pose, Repeat, Surface, Twist, Waypoint};
-use unipbd_core::shapes::{Shape, ShapeError, Wall, convex_decomposition};
+use unipbd_core::rigid::Wall;
+use unipbd_core::rigid::{BodyKind, BodySpec, Motion, Pose, Repeat, Surface, Twist, Waypoint};
+use unipbd_core::shapes::{Shape, ShapeError, convex_decomposition};
 
 /// An L of three unit squares.
 fn l_shape() -> Shape {

@@ -1,8 +1,9 @@
 use super::world::{GRAVITY, World, at, body, floor, unit_box};
 use unipbd_core::Vector64;
-use unipbd_core::bodies::{BodySpec, CollisionFilter, Pose, Surface, Twist};
-use unipbd_core::constraints::contact::ContactSettings;
-use unipbd_core::shapes::{Shape, Wall};
+use unipbd_core::rigid::Wall;
+use unipbd_core::rigid::contact::ContactSettings;
+use unipbd_core::rigid::{BodySpec, CollisionFilter, Pose, Surface, Twist};
+use unipbd_core::shapes::Shape;
 
 fn heap(settings: ContactSettings) -> World {
     lifted_heap(settings, 0.0)

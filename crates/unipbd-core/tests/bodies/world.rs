@@ -1,9 +1,10 @@
 //! A small free-standing loop: bodies, walls, contacts, nothing else.
 
 use unipbd_core::Vector64;
-use unipbd_core::bodies::{Bodies, BodySpec, Pose, Surface, Twist};
-use unipbd_core::constraints::contact::{ContactSettings, Contacts};
-use unipbd_core::shapes::{Shape, Wall};
+use unipbd_core::rigid::Wall;
+use unipbd_core::rigid::contact::{ContactSettings, Contacts};
+use unipbd_core::rigid::{Bodies, BodySpec, Pose, Surface, Twist};
+use unipbd_core::shapes::Shape;
 
 pub const GRAVITY: f64 = 9.81;
 pub const FRAME: f64 = 1.0 / 60.0;
@@ -110,7 +111,7 @@ impl World {
     }
 
     pub fn kinetic_energy(&self) -> f64 {
-        let energy = |b: &unipbd_core::bodies::Body| {
+        let energy = |b: &unipbd_core::rigid::Body| {
             0.5 * b.mass * b.velocity.length_squared() + 0.5 * b.inertia * b.angular_velocity * b.angular_velocity
         };
         self.bodies.views().iter().map(energy).sum()

@@ -1,5 +1,5 @@
 use crate::scenes::{all, build, build_on, liquid, plume, run};
-use unipbd_core::bodies::{BodyKind, Twist};
+use unipbd_core::rigid::{BodyKind, Twist};
 use unipbd_core::scene::{BodyDescription, PointMotion, Scene, Solid};
 use unipbd_core::{Edit, SolverError, Vector, Vector64};
 

@@ -123,7 +123,7 @@ fn mass_ratio() -> Ending {
 }
 
 fn crushed() -> Ending {
-    use unipbd_core::bodies::BodyKind;
+    use unipbd_core::rigid::BodyKind;
     use unipbd_core::scene::MotionDescription;
     let mut scene = half_full(Substeps::Fixed(8));
     scene.block[0] = Block::new("water", [0.0, 0.0], [1.6, 0.3]);

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use serde_json::json;
 use unipbd_core::BuildOptions;
-use unipbd_core::bodies::{Body, BodyKind};
 use unipbd_core::observe::Diagnostics;
+use unipbd_core::rigid::{Body, BodyKind};
 use unipbd_core::scene::Scene;
 
 use super::super::estimate::{emitted, particles as particle_object};

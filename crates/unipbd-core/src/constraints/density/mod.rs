@@ -16,7 +16,7 @@ use super::{ConstraintGroup, Corrections, DensityColumns, Needs, Substep};
 use crate::bytes::held;
 use crate::kernel::Kernel;
 use crate::math::{Real, Vector};
-use crate::simd::Records;
+use crate::passes::Records;
 use crate::walls::Coverage;
 use places::Places;
 

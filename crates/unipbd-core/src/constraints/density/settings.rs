@@ -1,8 +1,8 @@
 use crate::kernel::Kernel;
 use crate::math::{Real, real};
+use crate::passes::Reach;
 use crate::phase::Phase;
 use crate::scene::{GradientPoint, KernelKind, MaterialRef, Scene};
-use crate::simd::Reach;
 
 /// Settings of the density group.
 #[derive(Clone, Debug, PartialEq)]

@@ -2,13 +2,15 @@
 
 use super::{Density, DensityMaterial};
 use crate::constraints::{Corrections, Substep};
+use crate::kernel::{Shape, Tensile};
 use crate::math::{Real, Vector, larger, smaller, wide};
+use crate::neighbors::near::{self, Near, Work};
+use crate::neighbors::weigh::{At, Weighed};
 use crate::parallel::CHUNK_ROWS;
+use crate::passes::{self, DensityInput, DensityOutput, Weights};
 use crate::phase::{Phase, uniform};
-use crate::simd::near::{self, Near, Work};
+use crate::simd::Level;
 use crate::simd::space::{Open, Space, Wrapped};
-use crate::simd::weigh::{At, Weighed};
-use crate::simd::{self, DensityInput, DensityOutput, Level, Shape, Tensile, Weights};
 use crate::walls::Coverage;
 
 impl Density {
@@ -25,8 +27,8 @@ impl Density {
         let sums = &mut self.sums;
         let out = DensityOutput { value: &mut sums.value, gradient: &mut sums.gradient, response: &mut sums.response };
         match self.kernel.alternative() {
-            None => simd::density(now.pairs(), self.kernel.shape(), input, out),
-            Some(other) => simd::density(now.pairs(), other, input, out),
+            None => passes::density(now.pairs(), self.kernel.shape(), input, out),
+            Some(other) => passes::density(now.pairs(), other, input, out),
         }
     }
 
@@ -102,8 +104,8 @@ impl Density {
         let positions = self.places.pair_gradients(now);
         let (sums, records) = (&mut self.sums.gradient, &mut self.records);
         match self.kernel.alternative() {
-            None => simd::correction(now.pairs(), self.kernel.shape(), positions, &self.step, records, sums),
-            Some(other) => simd::correction(now.pairs(), other, positions, &self.step, records, sums),
+            None => passes::correction(now.pairs(), self.kernel.shape(), positions, &self.step, records, sums),
+            Some(other) => passes::correction(now.pairs(), other, positions, &self.step, records, sums),
         }
         let (sums, steps, walls) = (&self.sums.gradient, &self.step, &self.wall_gradient);
         let (volume, inverse_masses) = (self.settings.volume, now.particles.inverse_masses());
@@ -156,7 +158,7 @@ impl Density {
         now.parallelism.fill(&mut self.strength, |i| materials[usize::from(material_of[i])].repulsion);
         let positions = self.places.pair_gradients(now);
         let strengths = Weights::Column(&self.strength);
-        simd::repulsion(now.pairs(), reach, positions, strengths, &mut self.sums.gradient);
+        passes::repulsion(now.pairs(), reach, positions, strengths, &mut self.sums.gradient);
         let (sums, strength) = (&self.sums.gradient, &self.strength);
         let inverse_masses = now.particles.inverse_masses();
         now.parallelism.update(&mut out.displacements_mut()[..sums.len()], |i, displacement| {
@@ -181,11 +183,11 @@ impl Density {
         match self.kernel.alternative() {
             None => {
                 let shape = Tensile::new(self.kernel.shape(), reference);
-                simd::correction(now.pairs(), shape, positions, &self.step, records, sums);
+                passes::correction(now.pairs(), shape, positions, &self.step, records, sums);
             }
             Some(other) => {
                 let shape = Tensile::new(other, reference);
-                simd::correction(now.pairs(), shape, positions, &self.step, records, sums);
+                passes::correction(now.pairs(), shape, positions, &self.step, records, sums);
             }
         }
         let (sums, volume) = (&self.sums.gradient, self.settings.volume);

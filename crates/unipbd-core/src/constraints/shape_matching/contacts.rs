@@ -7,10 +7,10 @@
 //! averaging where both sides have as many, and keeps momentum where they have not.
 
 use super::ShapeMatching;
-use crate::bodies::Surface;
 use crate::constraints::{Corrections, Substep};
 use crate::math::{Vector64, vector, wide};
 use crate::phase::Phase;
+use crate::rigid::Surface;
 
 /// Samples with less signed distance than this lie at the surface [spacings].
 const SURFACE: f64 = 0.75;

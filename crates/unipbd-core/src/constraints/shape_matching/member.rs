@@ -1,7 +1,7 @@
 //! One body as particles, and the best rigid fit of its shape.
 
-use crate::bodies::{CollisionFilter, Elasticity, Surface};
 use crate::math::Vector64;
+use crate::rigid::{CollisionFilter, Elasticity, Surface};
 use crate::shapes::{Nearest, Shape};
 use std::ops::Range;
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use super::checker::{Allowed, Checker, number};
 use super::materials::excerpt;
 use super::motion;
-use crate::bodies::BodyKind;
+use crate::scene::BodyKind;
 use crate::scene::{BodyDescription, BodySolver, KeyPath, RotationRule, Side, Tank};
 
 /// More bodies than this are refused.

@@ -1,7 +1,7 @@
 //! Scripts of kinematic bodies.
 
 use super::checker::{Allowed, Checker, number};
-use crate::bodies::BodyKind;
+use crate::scene::BodyKind;
 use crate::scene::{BodyDescription, KeyPath, MotionDescription};
 
 pub(super) fn check(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {

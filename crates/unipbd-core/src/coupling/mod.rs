@@ -1,0 +1,243 @@
+//! Rigid bodies among the particles: their lattice samples as rows, loads from the fluid, and a
+//! fluid that stays outside.
+
+mod push_out;
+mod soft_bodies;
+
+use crate::math::{Real, Vector, Vector64, vector, wide};
+use crate::particles::Particles;
+use crate::rigid::contact::Contacts;
+use crate::rigid::{Bodies, Body};
+use crate::rows::RowIndex;
+use push_out::Trespasser;
+
+/// A little more than half the diagonal of a lattice cell [spacings].
+const LEAST_NEAR: f64 = 0.75;
+
+/// The bodies of a run, their contacts, and the ids of their samples.
+#[derive(Clone, serde::Serialize, serde::Deserialize)]
+pub struct RigidBodies {
+    pub(crate) bodies: Bodies,
+    pub(crate) contacts: Contacts,
+    /// Id of the first sample of each body, and one past the last of all.
+    first_sample: Vec<u32>,
+    /// Distance from a sample within which a particle may be inside the body, by body [m].
+    near: Vec<Real>,
+    /// Path in a substep, of a particle or a body, from which on the way counts and not the place alone [m].
+    far: Real,
+    trespassers: Vec<Trespasser>,
+    /// Ends of ropes that move with bodies.
+    tied: Vec<Tied>,
+    /// Bodies that are particles, drawn back to their shapes.
+    matched: Vec<soft_bodies::Matched>,
+}
+
+/// A point that moves with a body.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+struct Tied {
+    id: u32,
+    body: u32,
+    /// Where it is on the body [m].
+    place: Vector64,
+}
+
+impl RigidBodies {
+    /// Bodies whose samples have consecutive ids from `first_sample`, body by body.
+    /// Without a fluid nobody sees the samples: then there are none.
+    pub(crate) fn new(bodies: Bodies, contacts: Contacts, first_sample: Option<u32>, spacing: f64) -> Self {
+        let mut next = first_sample.unwrap_or(0);
+        let mut first = vec![next];
+        let mut near = Vec::new();
+        for body in bodies.views() {
+            let seen = first_sample.is_some();
+            next += if seen { body.samples.len() as u32 } else { 0 };
+            first.push(next);
+            let gap = if seen { push_out::widest_gap(body, spacing) } else { 0.0 };
+            near.push(gap.max(LEAST_NEAR * spacing) as Real);
+        }
+        let mut rigid = RigidBodies {
+            bodies,
+            contacts,
+            first_sample: first,
+            near,
+            far: (0.5 * spacing) as Real,
+            trespassers: Vec::new(),
+            tied: Vec::new(),
+            matched: Vec::new(),
+        };
+        rigid.list_matched(spacing);
+        rigid
+    }
+
+    /// From now on a particle moves with the body of this name, from a place in the world [m].
+    pub(crate) fn tie(&mut self, id: u32, body: &str, at: Vector64) {
+        let Some(number) = self.views().iter().position(|view| view.name == body) else { return };
+        let pose = self.bodies.pose(number as u32);
+        let place = Vector64::from_angle(-pose.angle).rotate(at - pose.position);
+        self.tied.push(Tied { id, body: number as u32, place });
+    }
+
+    /// The bodies as they are read from outside.
+    pub fn views(&self) -> &[Body] {
+        self.bodies.views()
+    }
+
+    /// Whether both hold the same bodies, perhaps at different times.
+    pub(crate) fn is_like(&self, other: &RigidBodies) -> bool {
+        self.first_sample == other.first_sample && self.bodies.is_like(&other.bodies)
+    }
+
+    /// Bodies that may have to carry each other: the height of all that are awake over the smallest.
+    pub(crate) fn support_chain(&self, gravity: Vector64) -> f64 {
+        let bodies = &self.bodies;
+        let awake = || (0..bodies.len()).filter(|&id| bodies.is_dynamic(id) && !bodies.asleep[id]);
+        let down = gravity.normalize_or_zero();
+        let heights = awake().map(|id| bodies.poses[id].position.dot(down));
+        let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
+        let smallest = awake().map(|id| bodies.sizes[id]).fold(f64::INFINITY, f64::min);
+        if high >= low { ((high - low) / smallest + 1.0).min(awake().count() as f64) } else { 0.0 }
+    }
+
+    /// Finds contacts, predicts the bodies and applies the impulses kept from the last substep.
+    pub(crate) fn predict(&mut self, dt: f64, time: f64, gravity: Vector64) {
+        self.contacts.begin_substep(&mut self.bodies, dt, gravity);
+        self.bodies.predict(dt, time, gravity);
+        self.contacts.warm_start(&mut self.bodies);
+    }
+
+    /// One iteration of all contacts and joints.
+    pub(crate) fn iterate_contacts(&mut self) {
+        self.contacts.iterate(&mut self.bodies);
+    }
+
+    /// Puts the samples where the bodies are predicted to be.
+    pub(crate) fn place_samples(&self, particles: &mut Particles, rows: &RowIndex) {
+        self.each_follower(rows, |body, sample, row| {
+            let (start, end) = (self.bodies.pose(body).apply(sample), self.bodies.predicted_pose(body).apply(sample));
+            particles.start[row] = vector(start);
+            particles.position[row] = vector(end);
+            particles.displacement[row] = vector(end - start);
+            particles.remainder[row] = Vector::ZERO;
+        });
+    }
+
+    /// Ends a substep: poses and velocities follow from the displacements.
+    pub(crate) fn integrate(&mut self, dt: f64) {
+        self.bodies.integrate(dt);
+        self.contacts.restitute(&mut self.bodies);
+        self.contacts.depenetrate(&mut self.bodies);
+    }
+
+    /// Puts the samples where the bodies are, with the velocity of the body's matter.
+    pub(crate) fn settle_samples(&self, particles: &mut Particles, rows: &RowIndex) {
+        self.each_follower(rows, |body, sample, row| {
+            let place = self.bodies.pose(body).apply(sample);
+            particles.position[row] = vector(place);
+            particles.velocity[row] = vector(self.bodies.velocity_at(body, place));
+        });
+    }
+
+    /// Sums the forces on the samples of each body, in the order of its samples.
+    /// `loads` are forces times dt^2 by row [kg m].
+    pub(crate) fn take_loads(&mut self, loads: &[Vector], particles: &Particles, rows: &RowIndex, dt: f64) {
+        for body in 0..self.bodies.len() as u32 {
+            if self.sleeps_with_samples(body, particles, rows) {
+                continue;
+            }
+            let center = self.bodies.predicted_pose(body).position;
+            let (mut force, mut torque) = (Vector64::ZERO, 0.0);
+            for id in self.first_sample[body as usize]..self.first_sample[body as usize + 1] {
+                let Some(row) = rows.row(id) else { continue };
+                let load = wide(loads[row as usize]);
+                force += load;
+                torque += (wide(particles.position[row as usize]) - center).perp_dot(load);
+            }
+            if force != Vector64::ZERO || torque != 0.0 {
+                self.bodies.load(body, force / (dt * dt), torque / (dt * dt), dt);
+            }
+        }
+    }
+
+    /// Visits the samples whose rows are known: body, place in the body, row.
+    fn each_sample(&self, rows: &RowIndex, mut visit: impl FnMut(u32, Vector64, usize)) {
+        for (body, view) in self.bodies.views().iter().enumerate() {
+            let ids = self.first_sample[body]..self.first_sample[body + 1];
+            for (id, &sample) in ids.zip(&view.samples) {
+                if let Some(row) = rows.row(id) {
+                    visit(body as u32, sample, row as usize);
+                }
+            }
+        }
+    }
+
+    /// Visits the samples and what is tied to bodies.
+    fn each_follower(&self, rows: &RowIndex, mut visit: impl FnMut(u32, Vector64, usize)) {
+        self.each_sample(rows, |body, place, row| {
+            if self.bodies.elasticity(body as usize).is_none() {
+                visit(body, place, row);
+            }
+        });
+        for tied in &self.tied {
+            if let Some(row) = rows.row(tied.id) {
+                visit(tied.body, tied.place, row as usize);
+            }
+        }
+    }
+
+    fn first_row(&self, body: u32, rows: &RowIndex) -> Option<usize> {
+        let ids = self.first_sample[body as usize]..self.first_sample[body as usize + 1];
+        if ids.is_empty() { None } else { rows.row(ids.start).map(|row| row as usize) }
+    }
+
+    /// Whether the samples of a body sleep, with the fluid around it: either all do, or none.
+    fn sleeps_with_samples(&self, body: u32, particles: &Particles, rows: &RowIndex) -> bool {
+        particles.asleep() > 0 && self.first_row(body, rows).is_some_and(|row| row >= particles.awake())
+    }
+
+    /// Whether the sample of this id may sleep: its body is not moved by a script.
+    pub(crate) fn may_rest(&self, id: u32) -> bool {
+        let body = self.first_sample.partition_point(|&first| first <= id) - 1;
+        let matched = self.bodies.elasticity(body).is_some();
+        !matched && (self.bodies.is_dynamic(body) || !self.bodies.is_active(body))
+    }
+
+    /// Visits the sleeping samples of bodies that are awake.
+    pub(crate) fn each_sample_left_asleep(&self, particles: &Particles, rows: &RowIndex, mut visit: impl FnMut(usize)) {
+        for body in 0..self.bodies.len() as u32 {
+            // A body that a script begins to move was not woken by anybody.
+            let awake = !self.bodies.is_asleep(body) || self.bodies.is_active(body as usize);
+            if awake && self.sleeps_with_samples(body, particles, rows) {
+                let ids = self.first_sample[body as usize]..self.first_sample[body as usize + 1];
+                ids.filter_map(|id| rows.row(id)).for_each(|row| visit(row as usize));
+            }
+        }
+    }
+
+    /// Wakes the bodies, with their islands, that have a sample in a row that is about to wake. Tells
+    /// whether there were any.
+    pub(crate) fn wake_bodies(&mut self, rows: &RowIndex, wakes: impl Fn(usize) -> bool) -> bool {
+        let mut any = false;
+        for body in 0..self.bodies.len() as u32 {
+            let mut ids = self.first_sample[body as usize]..self.first_sample[body as usize + 1];
+            let wakes = |id: u32| rows.row(id).is_some_and(|row| wakes(row as usize));
+            if self.bodies.is_asleep(body) && ids.any(wakes) {
+                self.contacts.wake(&mut self.bodies, body);
+                any = true;
+            }
+        }
+        any
+    }
+
+    /// Puts the bodies to sleep whose samples do.
+    pub(crate) fn lay_down(&mut self, particles: &Particles, rows: &RowIndex) {
+        let tired = |&body: &u32| !self.bodies.is_asleep(body) && self.sleeps_with_samples(body, particles, rows);
+        let tired: Vec<u32> = (0..self.bodies.len() as u32).filter(tired).collect();
+        self.contacts.lay_down(&mut self.bodies, &tired);
+    }
+
+    /// Ends a frame: sleep, mean loads.
+    pub(crate) fn finish_frame(&mut self, frame_time: f64) {
+        self.contacts.finish_frame(&mut self.bodies, frame_time);
+        self.bodies.finish_frame(frame_time);
+    }
+}

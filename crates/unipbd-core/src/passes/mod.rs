@@ -1,0 +1,231 @@
+//! The passes over all pairs of neighbours: where a step spends its time.
+//!
+//! Each pass is one function over plain columns. It picks the widest instruction set of the machine
+//! once per chunk of rows and works on eight rows at a time, straight from the blocks of the
+//! [`NeighborList`]. Beside its lane form every pass has a scalar form, which is what it computes:
+//! all forms give the same bits, because none of them fuses or reorders an operation, and square
+//! roots and quotients are exact everywhere. With the `f64` feature only the scalar forms exist.
+//!
+//! In the formulas x_ij = x_i - x_j (the shortest image of it), W is the kernel and grad W = g x_ij
+//! its gradient at x_i. A row's own contribution W(0) is left out.
+//!
+//! One file per family of passes: the scalar form that defines it, and the lane form beside it.
+
+mod correction;
+mod density;
+mod fields;
+mod records;
+mod repulsion;
+#[cfg(not(feature = "f64"))]
+mod run;
+mod velocity;
+
+pub use correction::correction;
+pub use density::{DensityInput, DensityOutput, density};
+pub use fields::{difference_gradient, laplacian};
+pub use records::Records;
+pub use repulsion::{Reach, repulsion};
+pub use velocity::{vorticity, xsph, xsph_mixed};
+
+use crate::math::{Real, Vector};
+use crate::neighbors::NeighborList;
+use crate::parallel::{CHUNK_ROWS, Parallelism};
+use crate::periodic::Periodic;
+use crate::simd::Record;
+use crate::simd::{LANES, Level, Number};
+#[cfg(not(feature = "f64"))]
+use run::LanePass;
+use std::ops::Range;
+
+/// The pairs a pass runs over, and how.
+#[derive(Clone, Copy)]
+pub struct Pairs<'a> {
+    list: &'a NeighborList,
+    periodic: Periodic,
+    parallelism: Parallelism,
+    #[cfg_attr(feature = "f64", allow(dead_code))]
+    level: Level,
+}
+
+impl<'a> Pairs<'a> {
+    /// All pairs of a list. The list may hold more pairs than are within the kernel's radius: they count for nothing.
+    pub fn new(list: &'a NeighborList, periodic: Periodic, parallelism: Parallelism) -> Self {
+        Pairs { list, periodic, parallelism, level: Level::best() }
+    }
+
+    /// The same pairs by another instruction set, if the machine has it. Results do not change.
+    pub fn at_level(self, level: Level) -> Self {
+        if Level::available().contains(&level) { Pairs { level, ..self } } else { self }
+    }
+
+    /// Number of rows.
+    pub fn rows(&self) -> usize {
+        self.list.rows()
+    }
+
+    /// Runs a pass over the rows of one chunk and stores the results of a block at a time,
+    /// under the numbers of its rows in the chunk.
+    #[inline]
+    #[cfg_attr(not(feature = "f64"), allow(unsafe_code))]
+    fn run_chunk<P: AnyForm<N>, const N: usize>(&self, pass: &P, first: usize, rows: usize, sink: &mut impl Sink<N>) {
+        #[cfg(not(feature = "f64"))]
+        if self.level != Level::Scalar {
+            assert!(pass.shortest_column() >= self.list.reach() && first + rows <= self.rows());
+            let chunks = &self.list.chunks()[first / CHUNK_ROWS..];
+            if let Some(next) = chunks.get(1) {
+                run::prefetch(next);
+            }
+            // SAFETY: the list takes its entries from row numbers below `reach()`, checked when it was
+            // built, and its own rows are below that too; every column of the pass has as many rows.
+            unsafe { run::run(self.level, pass, &chunks[0], first, rows, sink) };
+            return;
+        }
+        debug_assert_eq!(first % CHUNK_ROWS, 0);
+        for block in (0..rows).step_by(LANES) {
+            let valid = LANES.min(rows - block);
+            let mut sums = [[0.0; LANES]; N];
+            for lane in 0..valid {
+                let row = pass.row(self.list, first + block + lane);
+                sums.iter_mut().zip(row).for_each(|(lanes, value)| lanes[lane] = value);
+            }
+            sink.store(block..block + valid, &sums);
+        }
+    }
+
+    /// Puts the first `rows` rows of two columns side by side for the lane forms; the scalar ones read the columns,
+    /// and where all sleep nobody does.
+    fn pack<'r>(&self, records: &'r mut Records, rows: usize, record: impl Fn(usize) -> Record + Sync) -> &'r [Record] {
+        if cfg!(feature = "f64") || self.level == Level::Scalar || self.rows() == 0 {
+            return &[];
+        }
+        let packed = records.rows_mut(rows);
+        self.parallelism.fill(packed, record);
+        packed
+    }
+
+    fn fill<P: AnyForm<1>>(&self, pass: &P, out: &mut [Real]) {
+        self.check(out.len());
+        self.parallelism.chunks(out, |first, out| {
+            self.run_chunk(pass, first, out.len(), &mut Scalars(out));
+        });
+    }
+
+    fn fill_vectors<P: AnyForm<2>>(&self, pass: &P, out: &mut [Vector]) {
+        self.check(out.len());
+        self.parallelism.chunks(out, |first, out| {
+            self.run_chunk(pass, first, out.len(), &mut Vectors(out));
+        });
+    }
+
+    fn check(&self, rows: usize) {
+        assert_eq!(rows, self.rows(), "an output has as many rows as the list");
+    }
+}
+
+/// Where the results of a chunk go. (Not a closure: those are not inlined into the lane forms.)
+pub(super) trait Sink<const N: usize> {
+    /// Stores the results of some rows of the chunk.
+    fn store(&mut self, rows: Range<usize>, results: &[[Real; LANES]; N]);
+}
+
+struct Scalars<'a>(&'a mut [Real]);
+
+impl Sink<1> for Scalars<'_> {
+    #[inline(always)]
+    fn store(&mut self, rows: Range<usize>, [values]: &[[Real; LANES]; 1]) {
+        store(&mut self.0[rows], values);
+    }
+}
+
+struct Vectors<'a>(&'a mut [Vector]);
+
+impl Sink<2> for Vectors<'_> {
+    #[inline(always)]
+    fn store(&mut self, rows: Range<usize>, [x, y]: &[[Real; LANES]; 2]) {
+        store_vectors(&mut self.0[rows], x, y);
+    }
+}
+
+/// Writes the results of a block, which the last block of a set may fill in part.
+#[inline(always)]
+fn store(out: &mut [Real], values: &[Real; LANES]) {
+    match <&mut [Real; LANES]>::try_from(&mut *out) {
+        Ok(whole) => *whole = *values,
+        Err(_) => out.iter_mut().zip(values).for_each(|(slot, &value)| *slot = value),
+    }
+}
+
+/// As [`store`], for vectors.
+#[inline(always)]
+fn store_vectors(out: &mut [Vector], x: &[Real; LANES], y: &[Real; LANES]) {
+    match <&mut [Vector; LANES]>::try_from(&mut *out) {
+        Ok(whole) => *whole = std::array::from_fn(|lane| Vector::new(x[lane], y[lane])),
+        Err(_) => out.iter_mut().zip(x.iter().zip(y)).for_each(|(slot, (&x, &y))| *slot = Vector::new(x, y)),
+    }
+}
+
+/// A factor per row: the same for all, or a column.
+#[derive(Clone, Copy, Debug)]
+pub enum Weights<'a> {
+    /// The same for all rows; costs nothing per pair.
+    Uniform(Real),
+    /// One for each row.
+    Column(&'a [Real]),
+}
+
+impl<'a> Weights<'a> {
+    /// The column, or nothing, and the factor common to all rows.
+    fn parts(self) -> (&'a [Real], Real) {
+        match self {
+            Weights::Uniform(factor) => (&[], factor),
+            Weights::Column(column) => (column, 1.0),
+        }
+    }
+
+    fn is_column(self) -> bool {
+        matches!(self, Weights::Column(_))
+    }
+}
+
+/// Rows of a column that is read only where `used`.
+#[cfg_attr(feature = "f64", allow(dead_code))]
+fn rows_if(used: bool, column: &[Real]) -> usize {
+    if used { column.len() } else { usize::MAX }
+}
+
+/// A pass that sums `N` numbers per row: its scalar form.
+pub(super) trait Pass<const N: usize>: Sync {
+    /// The result for one row.
+    fn row(&self, list: &NeighborList, row: usize) -> [Real; N];
+
+    /// What a row gets from its sums.
+    fn finish<M: Number>(&self, sums: [M; N]) -> [M; N];
+
+    /// Rows that every column it reads has.
+    #[cfg_attr(feature = "f64", allow(dead_code))]
+    fn shortest_column(&self) -> usize;
+}
+
+/// A pass in all forms this build has.
+#[cfg(not(feature = "f64"))]
+trait AnyForm<const N: usize>: LanePass<N> {}
+#[cfg(not(feature = "f64"))]
+impl<P: LanePass<N>, const N: usize> AnyForm<N> for P {}
+#[cfg(feature = "f64")]
+trait AnyForm<const N: usize>: Pass<N> {}
+#[cfg(feature = "f64")]
+impl<P: Pass<N>, const N: usize> AnyForm<N> for P {}
+
+/// Runs an expression with `space` for the domain of `pairs`.
+macro_rules! in_space {
+    ($pairs:expr, $space:ident => $run:expr) => {
+        if $pairs.periodic.any() {
+            let $space = crate::simd::space::Wrapped::new($pairs.periodic);
+            $run
+        } else {
+            let $space = crate::simd::space::Open;
+            $run
+        }
+    };
+}
+use in_space;

@@ -1,0 +1,367 @@
+//! All bodies of a run: state as columns, everything else as it was specified.
+
+use super::{Body, BodyKind, BodySpec, Elasticity, MassSpec, Motion, Pose, Rotation, Twist};
+use crate::math::Vector64;
+use crate::shapes::{Core, Shape, ShapeError};
+use std::f64::consts::{PI, TAU};
+
+/// How a body answers to a push: its inverse mass and inertia, both 0 for what nothing moves.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Response {
+    /// Inverse mass [1/kg].
+    pub linear: f64,
+    /// Inverse moment of inertia [1/(kg m^2)].
+    pub angular: f64,
+}
+
+/// What a body keeps for life.
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+struct Script {
+    /// Pose of the outline's origin at time zero.
+    start: Pose,
+    /// Origin of the outline, seen from the centre of mass in body coordinates.
+    origin: Vector64,
+    motion: Motion,
+    /// Velocity that a caller gave a kinematic body: it replaces the script from then on.
+    driven: Option<Twist>,
+    gravity_factor: f64,
+}
+
+/// All bodies of a run. A body's index is its id: bodies are never removed or renumbered.
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub struct Bodies {
+    /// Distance of lattice samples, twice the largest contact radius [m].
+    spacing: f64,
+    pub(crate) poses: Vec<Pose>,
+    pub(crate) velocities: Vec<Twist>,
+    /// Displacement u over the running substep.
+    pub(crate) displacements: Vec<Twist>,
+    /// What each body answers with when awake.
+    pub(crate) awake_responses: Vec<Response>,
+    /// The same, and 0 while asleep.
+    pub(crate) responses: Vec<Response>,
+    pub(crate) asleep: Vec<bool>,
+    /// How those deform that are particles, drawn back to their shape: their pose only follows.
+    matched: Vec<Option<Elasticity>>,
+    /// Contacts and joints: sum of impulses since the frame began [N s], [N m s].
+    pub(crate) contact_loads: Vec<Twist>,
+    fluid_loads: Vec<Twist>,
+    /// Whether the fluid or a caller has pushed the body since the frame began.
+    pub(crate) pushed: Vec<bool>,
+    pub(crate) cores: Vec<Core>,
+    /// Largest distance of a point of the body from its centre of mass [m].
+    pub(crate) reaches: Vec<f64>,
+    /// Square root of the area [m].
+    pub(crate) sizes: Vec<f64>,
+    scripts: Vec<Script>,
+    views: Vec<Body>,
+}
+
+impl Bodies {
+    /// No bodies yet; `spacing` is the rest distance of particles [m].
+    pub fn new(spacing: f64) -> Bodies {
+        Bodies { spacing, ..Bodies::default() }
+    }
+
+    /// Number of bodies.
+    pub fn len(&self) -> usize {
+        self.poses.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.poses.is_empty()
+    }
+
+    /// Adds a body and returns its id.
+    pub fn add(&mut self, spec: BodySpec) -> Result<u32, ShapeError> {
+        spec.shape.check()?;
+        let outline = spec.shape.tidied();
+        let moments = outline.moments();
+        let shape = outline.translated(-moments.centroid);
+        let mass = match spec.mass {
+            MassSpec::Density(density) => density * moments.area,
+            MassSpec::Mass(mass) => mass,
+        };
+        let inertia = mass * moments.second / moments.area;
+        let matched = spec.matched.filter(|_| spec.kind == BodyKind::Dynamic);
+        let response = match (spec.kind, spec.rotation) {
+            _ if matched.is_some() => Response::default(),
+            (BodyKind::Dynamic, Rotation::Free) => Response { linear: 1.0 / mass, angular: 1.0 / inertia },
+            (BodyKind::Dynamic, Rotation::Locked) => Response { linear: 1.0 / mass, angular: 0.0 },
+            _ => Response::default(),
+        };
+        let motion = if spec.kind == BodyKind::Kinematic { spec.motion.clone() } else { Motion::Still };
+        let velocity = match spec.kind {
+            BodyKind::Dynamic if spec.rotation == Rotation::Locked => Twist { angular: 0.0, ..spec.velocity },
+            BodyKind::Dynamic => spec.velocity,
+            _ => script_velocity(&motion, spec.pose.angle, moments.centroid),
+        };
+        let origin = motion.pose(spec.pose, 0.0);
+        let pose = Pose { position: origin.apply(moments.centroid), angle: origin.angle };
+        self.poses.push(pose);
+        self.velocities.push(velocity);
+        self.displacements.push(Twist::ZERO);
+        self.awake_responses.push(response);
+        self.responses.push(response);
+        self.asleep.push(false);
+        self.matched.push(matched);
+        self.contact_loads.push(Twist::ZERO);
+        self.fluid_loads.push(Twist::ZERO);
+        self.pushed.push(false);
+        self.cores.push(shape.core(0.5 * self.spacing));
+        self.reaches.push(shape.bounding_radius());
+        self.sizes.push(moments.area.sqrt());
+        let gravity_factor = spec.gravity_factor;
+        self.scripts.push(Script { start: spec.pose, origin: -moments.centroid, motion, driven: None, gravity_factor });
+        self.views.push(view(spec, &shape, (mass, inertia), self.spacing));
+        let id = self.len() - 1;
+        self.refresh_view(id);
+        Ok(id as u32)
+    }
+
+    /// Whether both hold bodies of the same shapes and names, perhaps at different times.
+    pub(crate) fn is_like(&self, other: &Bodies) -> bool {
+        let bodies = self.len();
+        let same_kind = self.matched == other.matched;
+        let twists = [&self.velocities, &self.displacements, &self.contact_loads, &self.fluid_loads];
+        let responses = [&self.awake_responses, &self.responses];
+        let whole = twists.iter().all(|column| column.len() == bodies)
+            && responses.iter().all(|column| column.len() == bodies)
+            && [&self.reaches, &self.sizes].iter().all(|column| column.len() == bodies)
+            && [&self.asleep, &self.pushed].iter().all(|column| column.len() == bodies)
+            && self.cores == other.cores
+            && self.scripts.len() == bodies;
+        let same = |(a, b): (&Body, &Body)| a.name == b.name && a.kind == b.kind && a.samples.len() == b.samples.len();
+        whole
+            && same_kind
+            && self.views.len() == bodies
+            && bodies == other.len()
+            && self.views.iter().zip(&other.views).all(same)
+    }
+
+    /// The bodies as they are read from outside, in id order; up to date after [`Bodies::finish_frame`].
+    pub fn views(&self) -> &[Body] {
+        &self.views
+    }
+
+    /// Centre of mass and angle.
+    pub fn pose(&self, id: u32) -> Pose {
+        self.poses[id as usize]
+    }
+
+    /// Pose at the end of the running substep, as far as it is known.
+    pub fn predicted_pose(&self, id: u32) -> Pose {
+        let (pose, moved) = (self.poses[id as usize], self.displacements[id as usize]);
+        Pose { position: pose.position + moved.linear, angle: pose.angle + moved.angular }
+    }
+
+    /// Velocity of the centre of mass and angular velocity.
+    pub fn velocity(&self, id: u32) -> Twist {
+        self.velocities[id as usize]
+    }
+
+    /// Velocity of the body's matter at a point of the world [m/s].
+    pub fn velocity_at(&self, id: u32, point: Vector64) -> Vector64 {
+        self.velocities[id as usize].at(point - self.poses[id as usize].position)
+    }
+
+    /// Displacement in the running substep of the body's matter at `arm` from its centre of mass [m].
+    pub(crate) fn displacement_at(&self, id: u32, arm: Vector64) -> Vector64 {
+        self.displacements[id as usize].at(arm)
+    }
+
+    /// Lattice samples in body coordinates [m].
+    pub fn samples(&self, id: u32) -> &[Vector64] {
+        &self.views[id as usize].samples
+    }
+
+    /// Inverse mass and inertia as constraints must see them: 0 for what sleeps or is scripted.
+    pub fn response(&self, id: u32) -> Response {
+        self.responses[id as usize]
+    }
+
+    /// Whether a body is asleep.
+    pub fn is_asleep(&self, id: u32) -> bool {
+        self.asleep[id as usize]
+    }
+
+    /// Whether contacts or forces can move it.
+    pub(crate) fn is_dynamic(&self, id: usize) -> bool {
+        self.views[id].kind == BodyKind::Dynamic && self.matched[id].is_none()
+    }
+
+    /// How a body deforms whose shape is matched.
+    pub(crate) fn elasticity(&self, id: usize) -> Option<Elasticity> {
+        self.matched[id]
+    }
+
+    /// A body that is particles is where they are: its pose and velocity follow, and its outline where it is soft.
+    pub(crate) fn follow(&mut self, id: usize, pose: Pose, velocity: Twist, outline: Option<Vec<Vector64>>) {
+        let turn = (pose.angle - self.poses[id].angle + PI).rem_euclid(TAU) - PI;
+        self.poses[id] = Pose { angle: self.poses[id].angle + turn, ..pose };
+        self.velocities[id] = velocity;
+        self.views[id].outline = outline.unwrap_or_else(|| std::mem::take(&mut self.views[id].outline));
+    }
+
+    /// Whether it may be somewhere else after the next substep.
+    #[inline]
+    pub(crate) fn is_active(&self, id: usize) -> bool {
+        match self.views[id].kind {
+            BodyKind::Dynamic => !self.asleep[id] && self.matched[id].is_none(),
+            BodyKind::Kinematic => self.scripts[id].driven.is_some() || !self.scripts[id].motion.is_still(),
+            BodyKind::Static => false,
+        }
+    }
+
+    /// Predicts the displacements of a substep: u = dt v + dt^2 g, or what the script says.
+    /// `time` is the start of the substep [s].
+    pub fn predict(&mut self, dt: f64, time: f64, gravity: Vector64) {
+        for id in 0..self.len() {
+            self.displacements[id] = match self.views[id].kind {
+                BodyKind::Dynamic if !self.asleep[id] && self.matched[id].is_none() => {
+                    let mut moved = self.velocities[id].scaled(dt);
+                    moved.linear += gravity * (self.scripts[id].gravity_factor * dt * dt);
+                    moved
+                }
+                BodyKind::Kinematic => match self.scripts[id].driven {
+                    Some(velocity) => velocity.scaled(dt),
+                    None => self.scripted_displacement(id, time + dt),
+                },
+                _ => Twist::ZERO,
+            };
+        }
+    }
+
+    fn scripted_displacement(&self, id: usize, time: f64) -> Twist {
+        let script = &self.scripts[id];
+        if script.motion.is_still() {
+            return Twist::ZERO;
+        }
+        let origin = script.motion.pose(script.start, time);
+        let now = self.poses[id];
+        Twist { linear: origin.apply(-script.origin) - now.position, angular: origin.angle - now.angle }
+    }
+
+    /// Moves a body within the running substep: adds to its displacement [m], [rad].
+    pub fn push(&mut self, id: u32, linear: Vector64, angular: f64) {
+        self.displacements[id as usize] += Twist { linear, angular };
+        self.pushed[id as usize] = true;
+    }
+
+    /// Loads a body with a force and a torque about its centre of mass over a substep of length `dt`,
+    /// and counts both as the fluid's. Works for any kind; only dynamic bodies move.
+    pub fn load(&mut self, id: u32, force: Vector64, torque: f64, dt: f64) {
+        let response = self.responses[id as usize];
+        self.push(id, force * (response.linear * dt * dt), torque * response.angular * dt * dt);
+        self.fluid_loads[id as usize] += Twist { linear: force * dt, angular: torque * dt };
+    }
+
+    /// Ends a substep: x = x_n + u, v = u/dt.
+    pub fn integrate(&mut self, dt: f64) {
+        for id in 0..self.len() {
+            if self.is_active(id) {
+                let moved = self.displacements[id];
+                self.poses[id].position += moved.linear;
+                self.poses[id].angle += moved.angular;
+                self.velocities[id] = moved.scaled(1.0 / dt);
+            }
+        }
+    }
+
+    /// Ends a frame of length `frame_time` [s]: mean loads, and views brought up to date.
+    pub fn finish_frame(&mut self, frame_time: f64) {
+        for id in 0..self.len() {
+            let fluid = std::mem::take(&mut self.fluid_loads[id]).scaled(1.0 / frame_time);
+            let contact = std::mem::take(&mut self.contact_loads[id]).scaled(1.0 / frame_time);
+            // A sleeping body keeps the loads it fell asleep with: nothing has changed.
+            if !self.asleep[id] || !self.views[id].asleep {
+                (self.views[id].fluid_force, self.views[id].fluid_torque) = (fluid.linear, fluid.angular);
+                (self.views[id].contact_force, self.views[id].contact_torque) = (contact.linear, contact.angular);
+            }
+            self.pushed[id] = false;
+            self.refresh_view(id);
+        }
+    }
+
+    /// Puts a body to sleep: no velocity, and pushes do not move it.
+    pub(crate) fn fall_asleep(&mut self, id: usize) {
+        self.asleep[id] = true;
+        self.responses[id] = Response::default();
+        self.velocities[id] = Twist::ZERO;
+        self.displacements[id] = Twist::ZERO;
+    }
+
+    /// Wakes one body; [`Contacts`](crate::rigid::contact::Contacts) wakes whole islands.
+    pub(crate) fn wake(&mut self, id: usize) {
+        self.asleep[id] = false;
+        self.responses[id] = self.awake_responses[id];
+    }
+
+    /// Sets the velocity of a body. A dynamic one that sleeps is woken with its island at the next substep; a
+    /// kinematic one keeps the velocity, whatever its script says, until it is given another.
+    pub fn set_velocity(&mut self, id: u32, velocity: Twist) {
+        let id = id as usize;
+        match self.views[id].kind {
+            BodyKind::Dynamic => self.pushed[id] = true,
+            BodyKind::Kinematic => self.scripts[id].driven = Some(velocity),
+            BodyKind::Static => return,
+        }
+        self.velocities[id] = velocity;
+        self.refresh_view(id);
+    }
+
+    /// Lets a force [N] and a torque about the centre of mass [N m] act on a dynamic body over the
+    /// substep of length `dt` that is to come. One that sleeps is woken.
+    pub fn accelerate(&mut self, id: u32, force: Vector64, torque: f64, dt: f64) {
+        let response = self.awake_responses[id as usize];
+        let change = Twist { linear: force * (response.linear * dt), angular: torque * (response.angular * dt) };
+        if change != Twist::ZERO {
+            self.velocities[id as usize] += change;
+            self.pushed[id as usize] = true;
+        }
+    }
+
+    fn refresh_view(&mut self, id: usize) {
+        let view = &mut self.views[id];
+        (view.position, view.angle) = (self.poses[id].position, self.poses[id].angle);
+        (view.velocity, view.angular_velocity) = (self.velocities[id].linear, self.velocities[id].angular);
+        view.asleep = self.asleep[id];
+    }
+}
+
+fn script_velocity(motion: &Motion, angle: f64, centroid: Vector64) -> Twist {
+    let origin = motion.velocity(0.0);
+    let turned = angle + motion.displacement(0.0).angular;
+    let arm = Vector64::from_angle(turned).rotate(centroid);
+    Twist { linear: origin.at(arm), angular: origin.angular }
+}
+
+fn view(spec: BodySpec, shape: &Shape, (mass, inertia): (f64, f64), spacing: f64) -> Body {
+    let samples = shape.samples(spacing);
+    let (outline, radius) = match shape {
+        Shape::Disc { radius } => (Vec::new(), *radius),
+        Shape::Polygon(corners) => (corners.clone(), 0.0),
+    };
+    Body {
+        name: spec.name,
+        kind: spec.kind,
+        position: Vector64::ZERO,
+        angle: 0.0,
+        velocity: Vector64::ZERO,
+        angular_velocity: 0.0,
+        mass,
+        inertia,
+        outline,
+        radius,
+        samples: samples.points,
+        sample_area: samples.area,
+        surface: spec.surface,
+        filter: spec.filter,
+        asleep: false,
+        fluid_force: Vector64::ZERO,
+        fluid_torque: 0.0,
+        contact_force: Vector64::ZERO,
+        contact_torque: 0.0,
+    }
+}

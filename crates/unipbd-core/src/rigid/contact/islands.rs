@@ -1,0 +1,171 @@
+//! Sleep by islands: bodies that touch fall asleep together, once all of them have been slow for a
+//! while, and wake together. Impulses are kept, so that a woken pile stands as it stood.
+
+use super::joint::Linked;
+use super::manifold::Contact;
+use super::pieces::NONE;
+use super::union_find::UnionFind;
+use crate::rigid::Bodies;
+
+/// When bodies fall asleep.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct SleepSettings {
+    /// Speed of the fastest point of a body, |v| + |w| R, below which it counts as at rest [m/s].
+    pub speed: f64,
+    /// How long a whole island must have been at rest [s].
+    pub delay: f64,
+}
+
+impl Default for SleepSettings {
+    fn default() -> Self {
+        SleepSettings { speed: 0.05, delay: 0.5 }
+    }
+}
+
+/// Speed that a body may gather while it counts as at rest, over the speed below which it does.
+const GATHERED: f64 = 0.25;
+
+/// Rest times of bodies, and which bodies fell asleep together.
+#[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Islands {
+    /// How long each body has been at rest [s].
+    rest: Vec<f64>,
+    /// Its lowest speed since then [m/s].
+    calmest: Vec<f64>,
+    /// The island each sleeping body belongs to.
+    island: Vec<u32>,
+    touching: UnionFind,
+    /// The shortest rest time of each island, at its root.
+    #[serde(skip)]
+    least: Vec<f64>,
+}
+
+impl Islands {
+    pub fn resize(&mut self, bodies: usize) {
+        self.rest.resize(bodies, 0.0);
+        self.calmest.resize(bodies, 0.0);
+        self.island.resize(bodies, NONE);
+    }
+
+    /// Wakes the islands of bodies that were pushed.
+    pub fn wake_pushed(&mut self, bodies: &mut Bodies) {
+        for id in 0..bodies.len() {
+            if bodies.pushed[id] && bodies.asleep[id] {
+                self.wake_island(bodies, id);
+            }
+        }
+    }
+
+    /// Wakes the islands that a moving body touches in this substep; tells whether there were any.
+    pub fn wake_touched(&mut self, bodies: &mut Bodies, contacts: &[Contact], joints: &[Linked], dt: f64) -> bool {
+        let mut woken = false;
+        if !bodies.asleep.contains(&true) {
+            return false;
+        }
+        let mut touch = |islands: &mut Islands, bodies: &mut Bodies, a: u32, b: u32| {
+            for (moving, still) in [(a, b), (b, a)] {
+                if still != NONE && bodies.asleep[still as usize] && bodies.is_active(moving as usize) {
+                    islands.wake_island(bodies, still as usize);
+                    woken = true;
+                }
+            }
+        };
+        for contact in contacts.iter().filter(|contact| contact.b != NONE) {
+            let (a, b) = (contact.a, contact.b);
+            let asleep = bodies.asleep[a as usize] || bodies.asleep[b as usize];
+            if asleep && contact.gap_after(&bodies.velocities, dt) < 1e-3 * bodies.sizes[a as usize] {
+                touch(self, bodies, a, b);
+            }
+        }
+        for (a, b) in joints.iter().map(Linked::bodies).filter(|&(_, b)| b != NONE) {
+            touch(self, bodies, a, b);
+        }
+        woken
+    }
+
+    pub fn wake_island(&mut self, bodies: &mut Bodies, id: usize) {
+        let island = self.island[id];
+        for other in 0..bodies.len() {
+            if bodies.asleep[other] && self.island[other] == island {
+                bodies.wake(other);
+                self.rest[other] = 0.0;
+            }
+        }
+    }
+
+    /// At the end of a frame: puts islands to sleep that have been at rest long enough.
+    pub fn sleep(
+        &mut self,
+        bodies: &mut Bodies,
+        contacts: &[Contact],
+        joints: &[Linked],
+        settings: &SleepSettings,
+        frame_time: f64,
+    ) -> bool {
+        self.measure_rest(bodies, settings, frame_time);
+        if !self.rest.iter().zip(&bodies.asleep).any(|(&rest, &asleep)| rest >= settings.delay && !asleep) {
+            return false;
+        }
+        self.unite_touching(bodies, contacts, joints);
+        self.put_to_rest(bodies, settings)
+    }
+
+    /// Puts bodies to sleep at once: the fluid that carries them does.
+    pub fn lay_down(&mut self, bodies: &mut Bodies, tired: &[u32], contacts: &[Contact], joints: &[Linked]) {
+        self.unite_touching(bodies, contacts, joints);
+        for &body in tired {
+            bodies.fall_asleep(body as usize);
+            self.island[body as usize] = self.touching.root(body);
+        }
+    }
+
+    fn unite_touching(&mut self, bodies: &Bodies, contacts: &[Contact], joints: &[Linked]) {
+        self.touching.reset(bodies.len());
+        let touching = contacts.iter().filter(|contact| contact.is_pressed()).map(|contact| (contact.a, contact.b));
+        for (a, b) in touching.chain(joints.iter().map(Linked::bodies)).filter(|&(_, b)| b != NONE) {
+            self.unite(bodies, a, b);
+        }
+    }
+
+    fn measure_rest(&mut self, bodies: &Bodies, settings: &SleepSettings, frame_time: f64) {
+        for id in 0..bodies.len() {
+            let velocity = &bodies.velocities[id];
+            let speed = velocity.linear.length() + velocity.angular.abs() * bodies.reaches[id];
+            // What gathers speed is not at rest, however slow: a block begins to slide like that.
+            let gathers = speed > self.calmest[id] + GATHERED * settings.speed;
+            let still = speed < settings.speed && !bodies.pushed[id] && !gathers;
+            self.rest[id] = if still { self.rest[id] + frame_time } else { 0.0 };
+            self.calmest[id] = if still { speed.min(self.calmest[id]) } else { speed };
+        }
+    }
+
+    /// Links two dynamic bodies; what touches a moving script cannot rest.
+    fn unite(&mut self, bodies: &Bodies, a: u32, b: u32) {
+        let scripted = |id: u32| !bodies.is_dynamic(id as usize) && bodies.is_active(id as usize);
+        match (bodies.is_dynamic(a as usize), bodies.is_dynamic(b as usize)) {
+            (true, true) => self.touching.unite(a, b),
+            (true, false) if scripted(b) => self.rest[a as usize] = 0.0,
+            (false, true) if scripted(a) => self.rest[b as usize] = 0.0,
+            _ => {}
+        }
+    }
+
+    fn put_to_rest(&mut self, bodies: &mut Bodies, settings: &SleepSettings) -> bool {
+        self.least.clear();
+        self.least.resize(bodies.len(), f64::INFINITY);
+        for id in 0..bodies.len() {
+            let root = self.touching.root(id as u32) as usize;
+            self.least[root] = self.least[root].min(self.rest[id]);
+        }
+        let mut any = false;
+        for id in 0..bodies.len() {
+            let root = self.touching.root(id as u32);
+            if self.least[root as usize] >= settings.delay && bodies.is_dynamic(id) && !bodies.asleep[id] {
+                bodies.fall_asleep(id);
+                self.island[id] = root;
+                any = true;
+            }
+        }
+        any
+    }
+}

@@ -1,0 +1,122 @@
+//! A Jacobi sweep over contacts: each computes its push from the same state into its own slot, then
+//! each body gathers its pushes in the order of the contacts. The same bits on any number of threads.
+
+use super::manifold::{Contact, Site};
+use super::pieces::NONE;
+use crate::math::Vector64;
+use crate::rigid::{Response, Twist};
+use rayon::prelude::*;
+
+/// Equal and opposite pushes on two bodies.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Push {
+    pub linear: Vector64,
+    pub angular_a: f64,
+    pub angular_b: f64,
+}
+
+impl Push {
+    fn on_a(&self) -> Twist {
+        Twist { linear: self.linear, angular: self.angular_a }
+    }
+
+    fn on_b(&self) -> Twist {
+        Twist { linear: self.linear, angular: self.angular_b }
+    }
+}
+
+/// Below this many contacts a sweep is faster on one thread.
+const PARALLEL_FROM: usize = 6000;
+const CHUNK: usize = 1024;
+
+/// Buffers of the sweeps.
+#[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Jacobi {
+    /// Sum of the pushes of the last sweep, by body.
+    pub sums: Vec<Twist>,
+    pushes: Vec<Push>,
+    /// Contacts of body k: `slots[starts[k]..starts[k + 1]]`, each as 2 x contact + side.
+    starts: Vec<u32>,
+    slots: Vec<u32>,
+}
+
+impl Jacobi {
+    /// Lists the contacts of each body, where sweeps will run in parallel.
+    pub fn index(&mut self, contacts: &[Contact], bodies: usize) {
+        if !is_parallel(contacts) {
+            return;
+        }
+        self.starts.clear();
+        self.starts.resize(bodies + 1, 0);
+        let sides = || contacts.iter().zip(0u32..).flat_map(|(c, k)| [(c.a, 2 * k), (c.b, 2 * k + 1)]);
+        for (body, _) in sides().filter(|&(body, _)| body != NONE) {
+            self.starts[body as usize + 1] += 1;
+        }
+        for k in 0..bodies {
+            self.starts[k + 1] += self.starts[k];
+        }
+        self.slots.resize(self.starts[bodies] as usize, 0);
+        for (body, slot) in sides().filter(|&(body, _)| body != NONE) {
+            let next = &mut self.starts[body as usize];
+            self.slots[*next as usize] = slot;
+            *next += 1;
+        }
+        self.starts.rotate_right(1);
+        self.starts[0] = 0;
+    }
+
+    /// Evaluates `rule` for every contact from one state, then sums the pushes by body.
+    pub fn sweep(
+        &mut self,
+        (contacts, sites): (&mut [Contact], &mut [Site]),
+        bodies: usize,
+        rule: impl Fn(&mut Contact, &mut Site) -> Push + Sync,
+    ) {
+        self.sums.clear();
+        self.sums.resize(bodies, Twist::ZERO);
+        if !is_parallel(contacts) {
+            for (contact, site) in contacts.iter_mut().zip(sites) {
+                let push = rule(contact, site);
+                self.sums[contact.a as usize] += push.on_a();
+                if contact.b != NONE {
+                    self.sums[contact.b as usize] -= push.on_b();
+                }
+            }
+            return;
+        }
+        self.pushes.resize(contacts.len(), Push::default());
+        let rows = contacts.par_chunks_mut(CHUNK).zip(sites.par_chunks_mut(CHUNK));
+        rows.zip(self.pushes.par_chunks_mut(CHUNK)).for_each(|((contacts, sites), pushes)| {
+            for ((contact, site), push) in contacts.iter_mut().zip(sites).zip(pushes) {
+                *push = rule(contact, site);
+            }
+        });
+        self.gather();
+    }
+
+    fn gather(&mut self) {
+        let (starts, slots, pushes) = (&self.starts, &self.slots, &self.pushes);
+        self.sums.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(|(body, sum)| {
+            for &slot in &slots[starts[body] as usize..starts[body + 1] as usize] {
+                let push = &pushes[slot as usize / 2];
+                if slot % 2 == 0 {
+                    *sum += push.on_a();
+                } else {
+                    *sum -= push.on_b();
+                }
+            }
+        });
+    }
+
+    /// Adds the motion that the summed pushes cause.
+    pub fn apply(&self, responses: &[Response], motion: &mut [Twist]) {
+        for ((motion, push), response) in motion.iter_mut().zip(&self.sums).zip(responses) {
+            motion.linear += push.linear * response.linear;
+            motion.angular += push.angular * response.angular;
+        }
+    }
+}
+
+fn is_parallel(contacts: &[Contact]) -> bool {
+    contacts.len() >= PARALLEL_FROM && rayon::current_num_threads() > 1
+}

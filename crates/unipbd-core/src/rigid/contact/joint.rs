@@ -1,0 +1,227 @@
+//! Joints between two bodies, or a body and the world: hinges with motors, and distances.
+//!
+//! Equality constraints J u = 0 in the same split-Jacobi sweep as the contacts. Impulses act where the
+//! anchors are at the start of a substep, and stop the motion of the anchors in its middle: as in leapfrog
+//! schemes (SHAKE, Ryckaert et al. 1977) a body on a hinge so keeps its energy as it turns. What drift
+//! remains is removed from the positions alone. A distance with compliance is a spring, solved as in Macklin et al. 2016.
+
+use super::manifold::entry;
+use super::pieces::NONE;
+use crate::math::Vector64;
+use crate::rigid::{Bodies, Pose, Response, Twist};
+
+/// What a joint keeps.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub enum JointKind {
+    /// The anchors coincide; the bodies may turn.
+    Hinge {
+        /// Drives the relative angular velocity, if there is one.
+        motor: Option<Motor>,
+    },
+    /// The anchors keep a distance.
+    Distance {
+        /// Rest distance [m].
+        length: f64,
+        /// Inverse stiffness [m/N]; 0 is rigid.
+        compliance: f64,
+        /// Rod or rope.
+        rule: DistanceRule,
+    },
+}
+
+/// Whether a distance may become smaller.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub enum DistanceRule {
+    /// A rod: neither smaller nor larger.
+    Exact,
+    /// A rope: never larger.
+    AtMost,
+}
+
+/// Drives a hinge.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Motor {
+    /// Wanted angular velocity of the first body relative to the second [rad/s].
+    pub speed: f64,
+    /// Largest torque it has [N m].
+    pub max_torque: f64,
+}
+
+/// A joint; anchors are in body coordinates (from the centre of mass), or world coordinates.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Joint {
+    /// First body.
+    pub body: u32,
+    /// Second body; none is the world.
+    pub other: Option<u32>,
+    /// Anchor on the first body [m].
+    pub anchor: Vector64,
+    /// Anchor on the second body, or in the world [m].
+    pub other_anchor: Vector64,
+    /// What it keeps.
+    pub kind: JointKind,
+}
+
+/// A joint with its state in the solver.
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+pub(super) struct Linked {
+    pub joint: Joint,
+    /// Impulse on the first body: a vector of a hinge, or along the line in x [kg m].
+    pub impulse: Vector64,
+    /// Impulse of the motor [kg m^2].
+    pub motor: f64,
+    /// Arms of the anchors at the start of the substep, where impulses act, and in its middle.
+    arms: (Vector64, Vector64),
+    middle: (Vector64, Vector64),
+    /// Anchor of the first body seen from that of the second, at the start of the substep [m].
+    offset: Vector64,
+    split: (Response, Response),
+    dt: f64,
+}
+
+impl Linked {
+    pub fn new(joint: Joint) -> Linked {
+        let (impulse, offset, arms) = (Vector64::ZERO, Vector64::ZERO, Default::default());
+        Linked { joint, impulse, motor: 0.0, arms, middle: arms, offset, split: Default::default(), dt: 0.0 }
+    }
+
+    pub fn bodies(&self) -> (u32, u32) {
+        (self.joint.body, self.joint.other.unwrap_or(NONE))
+    }
+
+    /// Anchors and arms, with the bodies turned on by half of `displacements`.
+    fn place(&mut self, bodies: &Bodies, displacements: &[Twist]) {
+        let arm = |id: u32, anchor: Vector64, ahead: f64| {
+            let pose = if id == NONE { Pose::default() } else { bodies.poses[id as usize] };
+            let turned = pose.angle + ahead * entry(displacements, id).angular;
+            (pose.position, Vector64::from_angle(turned).rotate(anchor))
+        };
+        let ((a, b), joint) = (self.bodies(), &self.joint);
+        self.middle = (arm(a, joint.anchor, 0.5).1, arm(b, joint.other_anchor, 0.5).1);
+        let ((at_a, arm_a), (at_b, arm_b)) = (arm(a, joint.anchor, 0.0), arm(b, joint.other_anchor, 0.0));
+        self.arms = (arm_a, arm_b);
+        self.offset = (at_a + arm_a) - (at_b + arm_b);
+    }
+
+    /// Prepares a substep and returns the pushes of the impulses kept from the last one.
+    pub fn prepare(&mut self, bodies: &Bodies, split: &[Response], dt: f64, scale: f64) -> (Twist, Twist) {
+        self.place(bodies, &bodies.displacements);
+        let (a, b) = self.bodies();
+        (self.split, self.dt) = ((entry(split, a), entry(split, b)), dt);
+        self.impulse *= scale;
+        self.motor *= scale;
+        let vector = match self.joint.kind {
+            JointKind::Hinge { .. } => self.impulse,
+            JointKind::Distance { .. } => self.direction() * self.impulse.x,
+        };
+        self.pushes(vector, self.motor)
+    }
+
+    fn direction(&self) -> Vector64 {
+        self.offset.try_normalize().unwrap_or(Vector64::Y)
+    }
+
+    fn pushes(&self, vector: Vector64, moment: f64) -> (Twist, Twist) {
+        let on = |arm: Vector64| Twist { linear: vector, angular: arm.perp_dot(vector) + moment };
+        (on(self.arms.0), on(self.arms.1))
+    }
+
+    fn relative(&self, motion: &[Twist]) -> Vector64 {
+        let (a, b) = self.bodies();
+        entry(motion, a).at(self.middle.0) - entry(motion, b).at(self.middle.1)
+    }
+
+    /// One iteration from the given displacements: pushes on the first body, and to be taken from the second.
+    pub fn solve(&mut self, displacements: &[Twist]) -> (Twist, Twist) {
+        match self.joint.kind {
+            JointKind::Hinge { motor } => {
+                let added = -self.solve_point(self.relative(displacements));
+                self.impulse += added;
+                let moment = motor.map_or(0.0, |motor| self.drive(motor, displacements));
+                self.pushes(added, moment)
+            }
+            JointKind::Distance { length, compliance, rule } => {
+                let stretch = self.offset.length() - length;
+                let softness = compliance / (self.dt * self.dt);
+                let bias = match rule {
+                    DistanceRule::AtMost => stretch.min(0.0) + if softness > 0.0 { stretch.max(0.0) } else { 0.0 },
+                    DistanceRule::Exact => {
+                        if softness > 0.0 {
+                            stretch
+                        } else {
+                            0.0
+                        }
+                    }
+                };
+                let along = self.direction();
+                let excess = self.relative(displacements).dot(along) + bias + softness * self.impulse.x;
+                let mut total = self.impulse.x - excess / (self.weight(along) + softness);
+                if rule == DistanceRule::AtMost {
+                    total = total.min(0.0);
+                }
+                let added = total - self.impulse.x;
+                self.impulse.x = total;
+                self.pushes(along * added, 0.0)
+            }
+        }
+    }
+
+    fn drive(&mut self, motor: Motor, displacements: &[Twist]) -> f64 {
+        let (a, b) = self.bodies();
+        let turn = entry(displacements, a).angular - entry(displacements, b).angular;
+        let weight = self.split.0.angular + self.split.1.angular;
+        let limit = motor.max_torque * self.dt * self.dt;
+        let wanted = if weight > 0.0 { (motor.speed * self.dt - turn) / weight } else { 0.0 };
+        let total = (self.motor + wanted).clamp(-limit, limit);
+        total - std::mem::replace(&mut self.motor, total)
+    }
+
+    /// The impulse that would move the anchors apart by `apart` (2 x 2 system of the split masses).
+    fn solve_point(&self, apart: Vector64) -> Vector64 {
+        let (a, b) = self.split;
+        let response = |unit: Vector64| {
+            let moved = |arm: Vector64, middle: Vector64| middle.perp() * arm.perp_dot(unit);
+            let turned = moved(self.arms.0, self.middle.0) * a.angular + moved(self.arms.1, self.middle.1) * b.angular;
+            unit * (a.linear + b.linear) + turned
+        };
+        let (x, y) = (response(Vector64::X), response(Vector64::Y));
+        let determinant = x.perp_dot(y);
+        if determinant <= 0.0 {
+            return Vector64::ZERO;
+        }
+        Vector64::new(apart.perp_dot(y), x.perp_dot(apart)) / determinant
+    }
+
+    fn weight(&self, along: Vector64) -> f64 {
+        let (a, b) = self.split;
+        let moment = |arm: Vector64, middle: Vector64| arm.perp_dot(along) * middle.perp_dot(along);
+        let (at_a, at_b) = (moment(self.arms.0, self.middle.0), moment(self.arms.1, self.middle.1));
+        (a.linear + b.linear + at_a * a.angular + at_b * b.angular).max(f64::MIN_POSITIVE)
+    }
+
+    /// Position-only pushes that take away half of the drift, after the poses have moved.
+    pub fn separate(&mut self, bodies: &Bodies) -> (Twist, Twist) {
+        self.place(bodies, &[]);
+        match self.joint.kind {
+            JointKind::Hinge { .. } => self.pushes(-self.solve_point(self.offset * 0.5), 0.0),
+            JointKind::Distance { length, compliance, rule } => {
+                let stretch = self.offset.length() - length;
+                if compliance > 0.0 || (rule == DistanceRule::AtMost && stretch < 0.0) {
+                    return (Twist::ZERO, Twist::ZERO);
+                }
+                let along = self.direction();
+                self.pushes(along * (-0.5 * stretch / self.weight(along)), 0.0)
+            }
+        }
+    }
+}
+
+impl Linked {
+    /// The impulse on the first body as a vector [kg m].
+    pub fn force(&self) -> Vector64 {
+        match self.joint.kind {
+            JointKind::Hinge { .. } => self.impulse,
+            JointKind::Distance { .. } => self.direction() * self.impulse.x,
+        }
+    }
+}

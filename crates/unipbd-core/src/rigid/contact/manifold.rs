@@ -1,0 +1,317 @@
+//! Where two bodies touch: one or two points with a common normal, solved together.
+//!
+//! Impulses are in units of mass times displacement, force times dt^2 [kg m]. Solving the points of a
+//! pair at once, and splitting masses among pairs and not points, makes a sweep exact for a box on a
+//! floor and halves the split inside a stack. What every sweep reads is in [`Contact`], what is read
+//! once or seldom in [`Site`]: sweeps over large heaps are bound by memory.
+
+use super::Depenetration;
+use super::complementarity::{self, Coupling};
+use super::jacobi::Push;
+use super::narrow_phase::Touch;
+pub(super) use super::site::{Point, Site};
+use crate::math::Vector64;
+use crate::rigid::{Response, Surface, Twist};
+
+/// What stays the same within a substep.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
+struct Gains {
+    /// Response of the split masses along the normal [1/kg].
+    normal: Coupling,
+    /// Tangential response of each point to itself [1/kg].
+    tangent: [f64; 2],
+    /// Responses of both bodies to moments [1/(kg m^2)].
+    turning: (f64, f64),
+    /// Coulomb coefficient: the static one for what hardly slides, else the kinetic one.
+    friction: f64,
+}
+
+/// One or two points of two bodies with a common normal.
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+pub(super) struct Contact {
+    pub a: u32,
+    /// Second body; `NONE` for a wall.
+    pub b: u32,
+    count: u32,
+    /// Unit normal, towards the first body.
+    pub normal: Vector64,
+    points: [Point; 2],
+    gains: Gains,
+    /// Rolling friction times the radius that rolls [m].
+    rolling_arm: f64,
+    /// Moment against rolling [kg m^2].
+    pub rolling_impulse: f64,
+}
+
+/// The body's entry, or nothing for a wall.
+pub(super) fn entry<T: Copy + Default>(column: &[T], body: u32) -> T {
+    column.get(body as usize).copied().unwrap_or_default()
+}
+
+/// What the normal impulses of an iteration come to.
+struct Pressed {
+    /// Displacements of the two bodies before it.
+    a: Twist,
+    b: Twist,
+    normal: [f64; 2],
+    /// How far they turn the two bodies against each other, with the split masses.
+    turned: (f64, f64),
+}
+
+impl Pressed {
+    fn total(&self) -> f64 {
+        self.normal[0] + self.normal[1]
+    }
+}
+
+impl Contact {
+    pub fn new((a, b): (u32, u32), normal: Vector64, rolling_arm: f64) -> Contact {
+        let (points, gains) = ([Point::default(); 2], Gains::default());
+        Contact { a, b, count: 0, normal, points, gains, rolling_arm, rolling_impulse: 0.0 }
+    }
+
+    /// Whether one more point with this normal can be added.
+    pub fn has_room(&self, normal: Vector64) -> bool {
+        self.count < 2 && self.is_along(normal)
+    }
+
+    /// Whether a point with this normal can be one of the contact.
+    pub fn is_along(&self, normal: Vector64) -> bool {
+        self.normal.dot(normal) > 0.9999
+    }
+
+    /// Adds a point without impulse; `centers` are those of mass.
+    pub fn add(&mut self, touch: &Touch, centers: (Vector64, Vector64)) {
+        let (arm_a, arm_b) = (touch.on_a - centers.0, touch.on_b - centers.1);
+        let (normal, tangent) = (self.normal, self.tangent());
+        self.points[self.count as usize] = Point {
+            gap: touch.gap,
+            normal_impulse: 0.0,
+            tangent_impulse: 0.0,
+            normal_a: arm_a.perp_dot(normal),
+            normal_b: arm_b.perp_dot(normal),
+            tangent_a: arm_a.perp_dot(tangent),
+            tangent_b: arm_b.perp_dot(tangent),
+        };
+        self.count += 1;
+    }
+
+    pub fn points(&self) -> &[Point] {
+        &self.points[..self.count as usize]
+    }
+
+    /// What its impulses become in substeps of another length.
+    pub fn scale_impulses(&mut self, factor: f64) {
+        self.rolling_impulse *= factor;
+        for point in self.points_mut() {
+            let old = *point;
+            point.keep(&old, factor);
+        }
+    }
+
+    pub fn points_mut(&mut self) -> &mut [Point] {
+        &mut self.points[..self.count as usize]
+    }
+
+    /// From the centre of mass of the first body to its surface at a point [m].
+    pub fn arm_a(&self, point: &Point) -> Vector64 {
+        self.normal * point.tangent_a - self.tangent() * point.normal_a
+    }
+
+    /// Whether it carries any load.
+    pub fn is_pressed(&self) -> bool {
+        self.points().iter().any(|point| point.normal_impulse > 0.0)
+    }
+
+    fn tangent(&self) -> Vector64 {
+        self.normal.perp()
+    }
+
+    /// Least gap left after a motion of the bodies [m].
+    pub fn gap_after(&self, motion: &[Twist], time: f64) -> f64 {
+        let (a, b) = (entry(motion, self.a), entry(motion, self.b));
+        let left = |point: &Point| point.gap + (self.opening(point, &a, &b) * time).min(0.0);
+        self.points().iter().map(left).fold(f64::INFINITY, f64::min)
+    }
+
+    /// Notes the velocities at the start of a substep. What slides slower than `slow` [m/s] sticks.
+    pub fn note_velocities(&mut self, site: &mut Site, velocities: &[Twist], slow: f64) {
+        let (a, b) = (entry(velocities, self.a), entry(velocities, self.b));
+        let mut sliding = 0.0f64;
+        for (k, point) in self.points().iter().enumerate() {
+            site.approach[k] = self.opening(point, &a, &b);
+            sliding = sliding.max(self.slide(point, &a, &b).abs());
+        }
+        let surface = &site.surface;
+        self.gains.friction = if sliding < slow { surface.static_friction } else { surface.kinetic_friction };
+    }
+
+    /// Prepares the equations; `split` are the responses times the share of contacts in each body.
+    pub fn prepare(&mut self, split: &[Response]) {
+        let (a, b) = (entry(split, self.a), entry(split, self.b));
+        let linear = a.linear + b.linear;
+        let turning = |pa: f64, qa: f64, pb: f64, qb: f64| pa * qa * a.angular + pb * qb * b.angular;
+        let along_normal = |p: &Point, q: &Point| linear + turning(p.normal_a, q.normal_a, p.normal_b, q.normal_b);
+        let along_tangent = |p: &Point| linear + turning(p.tangent_a, p.tangent_a, p.tangent_b, p.tangent_b);
+        let [p, q] = &self.points;
+        let mut normal = Coupling { first: along_normal(p, p), second: 0.0, off: 0.0 };
+        let mut tangent = [along_tangent(p), 0.0];
+        if self.count == 2 {
+            (normal.second, normal.off, tangent[1]) = (along_normal(q, q), along_normal(p, q), along_tangent(q));
+        }
+        self.gains = Gains { normal, tangent, turning: (a.angular, b.angular), friction: self.gains.friction };
+    }
+
+    /// The push of the impulses kept from the last substep.
+    pub fn kept_push(&self) -> Push {
+        let moment = self.rolling_impulse;
+        let mut push = Push { linear: Vector64::ZERO, angular_a: moment, angular_b: moment };
+        for point in self.points() {
+            self.add_push(&mut push, point, point.normal_impulse, point.tangent_impulse);
+        }
+        push
+    }
+
+    fn add_push(&self, push: &mut Push, point: &Point, normal: f64, tangent: f64) {
+        push.linear += self.normal * normal + self.tangent() * tangent;
+        push.angular_a += point.normal_a * normal + point.tangent_a * tangent;
+        push.angular_b += point.normal_b * normal + point.tangent_b * tangent;
+    }
+
+    fn opening(&self, point: &Point, a: &Twist, b: &Twist) -> f64 {
+        (a.linear - b.linear).dot(self.normal) + point.normal_a * a.angular - point.normal_b * b.angular
+    }
+
+    fn slide(&self, point: &Point, a: &Twist, b: &Twist) -> f64 {
+        (a.linear - b.linear).dot(self.tangent()) + point.tangent_a * a.angular - point.tangent_b * b.angular
+    }
+
+    /// One iteration: no approach beyond the gap, friction inside Coulomb's cone, rolling resistance.
+    pub fn solve(&mut self, displacements: &[Twist]) -> Push {
+        let old = self.points.map(|point| point.normal_impulse);
+        let Some(pressed) = self.press(displacements, old) else { return Push::default() };
+        let mut push = Push::default();
+        for (k, old) in old.into_iter().enumerate().take(self.count as usize) {
+            let (point, normal) = (self.points[k], pressed.normal[k]);
+            let limit = self.gains.friction * normal;
+            let tangent = (point.tangent_impulse - self.stop(k, &pressed)).clamp(-limit, limit);
+            self.add_push(&mut push, &point, normal - old, tangent - point.tangent_impulse);
+            (self.points[k].normal_impulse, self.points[k].tangent_impulse) = (normal, tangent);
+        }
+        if self.rolling_arm > 0.0 {
+            self.resist_rolling(&pressed, &mut push);
+        }
+        push
+    }
+
+    /// One iteration on the positions alone, as in Macklin et al. 2014: what lies too deep is taken out, and of the
+    /// way the bodies slid past each other what friction holds back for this depth (equations 23 to 25).
+    pub fn solve_positions(&mut self, surface: &Surface, displacements: &[Twist]) -> Push {
+        let Some(pressed) = self.press(displacements, [0.0; 2]) else { return Push::default() };
+        let mut push = Push::default();
+        for k in 0..self.count as usize {
+            let normal = pressed.normal[k];
+            let held = surface.held_back(self.stop(k, &pressed), normal);
+            self.add_push(&mut push, &self.points[k], normal, -held);
+            self.points[k].normal_impulse += normal;
+            self.points[k].tangent_impulse -= held;
+        }
+        if self.rolling_arm > 0.0 && pressed.total() > 0.0 {
+            self.rolling_impulse = 0.0;
+            self.resist_rolling(&pressed, &mut push);
+        }
+        push
+    }
+
+    /// The normal impulses that leave no approach beyond the gap, in place of the `old` ones; none where
+    /// there were none and none are needed.
+    fn press(&self, displacements: &[Twist], old: [f64; 2]) -> Option<Pressed> {
+        let (a, b) = (entry(displacements, self.a), entry(displacements, self.b));
+        let mut excess = [0.0; 2];
+        for (excess, point) in excess.iter_mut().zip(self.points()) {
+            *excess = self.opening(point, &a, &b) + point.gap.max(0.0);
+        }
+        if old == [0.0; 2] && excess[0] >= 0.0 && excess[1] >= 0.0 && self.rolling_impulse == 0.0 {
+            return None;
+        }
+        let normal = complementarity::solve(&self.gains.normal, excess, old, [0.0; 2]);
+        let (p, q, change) = (&self.points[0], &self.points[1], [normal[0] - old[0], normal[1] - old[1]]);
+        let (turns_a, turns_b) = self.gains.turning;
+        let turned_a = turns_a * (p.normal_a * change[0] + q.normal_a * change[1]);
+        let turned_b = turns_b * (p.normal_b * change[0] + q.normal_b * change[1]);
+        Some(Pressed { a, b, normal, turned: (turned_a, turned_b) })
+    }
+
+    /// The tangential impulse that ends the sliding at a point, after the normal ones have acted.
+    fn stop(&self, k: usize, pressed: &Pressed) -> f64 {
+        let (point, total) = (&self.points[k], pressed.total());
+        if total <= 0.0 {
+            return 0.0;
+        }
+        let turned = point.tangent_a * pressed.turned.0 + point.tangent_b * pressed.turned.1;
+        // Points of one line slide alike: each answers for its share of the load.
+        let share = pressed.normal[k] / total;
+        (self.slide(point, &pressed.a, &pressed.b) + turned) * share / self.gains.tangent[k]
+    }
+
+    /// Rolling resistance, after the other impulses of the contact have turned the bodies.
+    fn resist_rolling(&mut self, pressed: &Pressed, push: &mut Push) {
+        let limit = self.rolling_arm * pressed.total();
+        let (a, b) = self.gains.turning;
+        let turn = pressed.a.angular - pressed.b.angular + push.angular_a * a + push.angular_b * b;
+        let moment = (self.rolling_impulse - turn / (a + b)).clamp(-limit, limit);
+        push.angular_a += moment - self.rolling_impulse;
+        push.angular_b += moment - self.rolling_impulse;
+        self.rolling_impulse = moment;
+    }
+
+    fn point_rebounds(&self, k: usize, site: &Site, slowest: f64) -> bool {
+        self.points[k].normal_impulse > 0.0 && site.approach[k] < -slowest
+    }
+
+    /// Whether the contact rebounds: it was hit faster than `slowest` [m/s].
+    pub fn rebounds(&self, site: &Site, slowest: f64) -> bool {
+        site.surface.restitution > 0.0 && (0..2).any(|k| self.point_rebounds(k, site, slowest))
+    }
+
+    /// One velocity iteration towards v_n = -e v_before; the whole impulse of the substep stays repulsive.
+    pub fn rebound(&self, site: &mut Site, velocities: &[Twist], dt: f64, slowest: f64) -> Push {
+        let (a, b) = (entry(velocities, self.a), entry(velocities, self.b));
+        let acts = [0, 1].map(|k| self.point_rebounds(k, site, slowest));
+        let excess =
+            [0, 1].map(|k| self.opening(&self.points[k], &a, &b) + site.surface.restitution * site.approach[k]);
+        let Coupling { first, second, off } = self.gains.normal;
+        let keep = |acts: bool, gain: f64| if acts { gain } else { 0.0 };
+        let coupling = Coupling { first: keep(acts[0], first), second: keep(acts[1], second), off };
+        let (old, lower) = (site.rebound, self.points.map(|point| -point.normal_impulse / dt));
+        let total = complementarity::solve(&coupling, excess, old, lower);
+        let mut push = Push::default();
+        for (k, point) in self.points().iter().enumerate() {
+            self.add_push(&mut push, point, total[k] - old[k], 0.0);
+            site.rebound[k] = total[k];
+        }
+        push
+    }
+
+    /// The push that takes overlap out of the positions; `size` is that of the smaller body [m].
+    pub fn separate(&self, displacements: &[Twist], how: &Depenetration, size: f64, dt: f64) -> Push {
+        let (a, b) = (entry(displacements, self.a), entry(displacements, self.b));
+        let mut overlap = [0.0; 2];
+        for (overlap, point) in overlap.iter_mut().zip(self.points()) {
+            *overlap = -(point.gap + self.opening(point, &a, &b)) - how.slop * size;
+        }
+        if overlap[0] <= 0.0 && overlap[1] <= 0.0 {
+            return Push::default();
+        }
+        let lacking = overlap.map(|overlap| {
+            let deep = (overlap - how.deep * size).max(0.0);
+            -(how.fraction * overlap + (how.deep_fraction - how.fraction) * deep).clamp(0.0, how.speed * dt)
+        });
+        let normal = complementarity::solve(&self.gains.normal, lacking, [0.0; 2], [0.0; 2]);
+        let mut push = Push::default();
+        for (point, normal) in self.points().iter().zip(normal) {
+            self.add_push(&mut push, point, normal, 0.0);
+        }
+        push
+    }
+}

@@ -1,0 +1,356 @@
+//! Contacts and joints of rigid bodies: split Jacobi on the displacements of a substep.
+//!
+//! Contacts are constraints on the displacement u of a substep, warm started with the impulses of the
+//! last one and solved by Jacobi sweeps in which a body's mass is split among its contacts (Tonge et al.
+//! 2012, "Mass splitting for jitter-free parallel rigid body simulation"). Overlap never becomes
+//! velocity: a separate pass takes it out of the positions. A substep calls, in this order:
+//!
+//! 1. [`Contacts::begin_substep`] finds the contacts,
+//! 2. [`Bodies::predict`] and [`Contacts::warm_start`],
+//! 3. [`Contacts::iterate`], before and again after the fluid has pushed the bodies,
+//! 4. [`Bodies::integrate`],
+//! 5. [`Contacts::restitute`] and [`Contacts::depenetrate`];
+//!
+//! a frame ends with [`Contacts::finish_frame`] and [`Bodies::finish_frame`].
+
+mod broad;
+mod complementarity;
+mod find;
+mod islands;
+mod jacobi;
+mod joint;
+mod manifold;
+mod mass_scaling;
+mod narrow_phase;
+mod pairs;
+mod pieces;
+mod search;
+mod settings;
+mod site;
+mod union_find;
+
+pub use crate::scene::ContactMethod;
+pub use islands::SleepSettings;
+pub use joint::{DistanceRule, Joint, JointKind, Motor};
+pub use settings::{ContactSettings, Depenetration};
+
+use crate::math::Vector64;
+use crate::rigid::Wall;
+use crate::rigid::{Bodies, Response, Twist};
+use find::{Finder, Moment};
+use islands::Islands;
+use jacobi::Jacobi;
+use joint::Linked;
+use manifold::{Contact, Site, entry};
+use pieces::NONE;
+
+/// The contacts and joints of all bodies: solver state that lasts from substep to substep.
+#[derive(Clone, serde::Serialize, serde::Deserialize)]
+pub struct Contacts {
+    settings: ContactSettings,
+    finder: Finder,
+    joints: Vec<Linked>,
+    islands: Islands,
+    jacobi: Jacobi,
+    split: Vec<Response>,
+    /// Responses as contacts see them; empty without mass scaling: then they are those of the bodies.
+    scaled: Vec<Response>,
+    counts: Vec<u32>,
+    corrections: Vec<Twist>,
+    wall_impulses: Vec<Vector64>,
+    wall_forces: Vec<Vector64>,
+    dt: f64,
+    warm_factor: f64,
+    gravity: f64,
+    up: Vector64,
+}
+
+/// What can be read about a contact.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ContactPoint {
+    /// First body.
+    pub body: u32,
+    /// Second body, unless a wall is touched.
+    pub other: Option<u32>,
+    /// The wall touched, if one is.
+    pub wall: Option<u32>,
+    /// Unit normal, towards the first body.
+    pub normal: Vector64,
+    /// Distance of the surfaces at the start of the last substep, negative when they overlap [m].
+    pub gap: f64,
+    /// Normal force on the first body over the last substep [N].
+    pub normal_force: f64,
+    /// Friction force on the first body, along the normal turned left [N].
+    pub friction_force: f64,
+}
+
+impl Contacts {
+    /// No contacts yet, between bodies and these walls.
+    pub fn new(walls: &[Wall], settings: ContactSettings) -> Contacts {
+        Contacts {
+            settings,
+            finder: Finder::new(walls),
+            joints: Vec::new(),
+            islands: Islands::default(),
+            jacobi: Jacobi::default(),
+            split: Vec::new(),
+            scaled: Vec::new(),
+            counts: Vec::new(),
+            corrections: Vec::new(),
+            wall_impulses: vec![Vector64::ZERO; walls.len()],
+            wall_forces: vec![Vector64::ZERO; walls.len()],
+            dt: 0.0,
+            warm_factor: 1.0,
+            gravity: 0.0,
+            up: Vector64::ZERO,
+        }
+    }
+
+    /// Adds a joint; the bodies it links no longer collide with each other. Returns its index.
+    pub fn add_joint(&mut self, joint: Joint) -> usize {
+        self.joints.push(Linked::new(joint));
+        if let Some(other) = joint.other {
+            self.finder.exclude(joint.body, other);
+        }
+        self.joints.len() - 1
+    }
+
+    /// Changes what a joint keeps, such as the speed of its motor.
+    pub fn set_joint(&mut self, index: usize, kind: JointKind, bodies: &mut Bodies) {
+        self.joints[index].joint.kind = kind;
+        bodies.pushed[self.joints[index].joint.body as usize] = true;
+    }
+
+    /// Finds the contacts at the start of a substep and wakes what is touched.
+    pub fn begin_substep(&mut self, bodies: &mut Bodies, dt: f64, gravity: Vector64) {
+        // Impulses are forces times dt^2: the same force in a longer substep is more of them.
+        self.warm_factor = if self.dt > 0.0 { (dt / self.dt) * (dt / self.dt) } else { 1.0 };
+        self.dt = dt;
+        self.gravity = gravity.length();
+        self.up = -gravity.normalize_or_zero();
+        self.islands.resize(bodies.len());
+        self.islands.wake_pushed(bodies);
+        let kept = if self.settings.method == ContactMethod::Split { self.warm_factor } else { 0.0 };
+        let moment = Moment { dt, gravity: self.gravity, kept, slow: 2.0 * self.gravity * dt };
+        loop {
+            self.finder.find(bodies, &moment);
+            if !self.islands.wake_touched(bodies, self.finder.candidates(), &self.joints, dt) {
+                break;
+            }
+        }
+        self.finder.adopt();
+    }
+
+    /// Shares each body among its contacts and applies the impulses kept from the last substep.
+    pub fn warm_start(&mut self, bodies: &mut Bodies) {
+        self.split_masses(bodies);
+        self.jacobi.index(self.finder.contacts(), bodies.len());
+        let split = &self.split;
+        self.jacobi.sweep(self.finder.rows(), bodies.len(), |contact, _| {
+            contact.prepare(split);
+            contact.kept_push()
+        });
+        for linked in &mut self.joints {
+            let (a, b) = linked.bodies();
+            let pushes = linked.prepare(bodies, &self.split, self.dt, self.warm_factor);
+            add_pair(&mut self.jacobi.sums, (a, b), pushes);
+        }
+        self.apply_displacements(bodies);
+    }
+
+    /// N = max(1, n/relaxation) for the n contacts and joints that act on a body in this substep.
+    fn split_masses(&mut self, bodies: &Bodies) {
+        self.counts.clear();
+        self.counts.resize(bodies.len(), 0);
+        let mut count = |body: u32| {
+            if body != NONE {
+                self.counts[body as usize] += 1;
+            }
+        };
+        for contact in self.finder.contacts() {
+            let near = 1e-3 * bodies.sizes[contact.a as usize];
+            if contact.is_pressed() || contact.gap_after(&bodies.displacements, 1.0) < near {
+                count(contact.a);
+                count(contact.b);
+            }
+        }
+        for (a, b) in self.joints.iter().map(Linked::bodies) {
+            count(a);
+            count(b);
+        }
+        let relaxation = self.settings.relaxation;
+        if self.settings.mass_scaling > 0.0 {
+            mass_scaling::scale(self.finder.contacts(), bodies, self.up, self.settings.mass_scaling, &mut self.scaled);
+        }
+        self.split.clear();
+        self.split.extend(seen(&self.scaled, &bodies.responses).iter().zip(&self.counts).map(|(response, &count)| {
+            let shares = (f64::from(count) / relaxation).max(1.0);
+            Response { linear: response.linear * shares, angular: response.angular * shares }
+        }));
+    }
+
+    /// Jacobi iterations of all contacts and joints on the displacements, one unless the settings say more.
+    pub fn iterate(&mut self, bodies: &mut Bodies) {
+        for _ in 0..self.settings.iterations {
+            self.sweep(bodies);
+        }
+    }
+
+    fn sweep(&mut self, bodies: &mut Bodies) {
+        let displacements = &bodies.displacements;
+        let rows = self.finder.rows();
+        match self.settings.method {
+            ContactMethod::Split => self.jacobi.sweep(rows, bodies.len(), |contact, _| contact.solve(displacements)),
+            ContactMethod::Averaged => self
+                .jacobi
+                .sweep(rows, bodies.len(), |contact, site| contact.solve_positions(&site.surface, displacements)),
+        }
+        for linked in self.joints.iter_mut().filter(|linked| is_movable(linked, bodies)) {
+            let pushes = linked.solve(&bodies.displacements);
+            add_pair(&mut self.jacobi.sums, linked.bodies(), pushes);
+        }
+        self.apply_displacements(bodies);
+    }
+
+    fn apply_displacements(&mut self, bodies: &mut Bodies) {
+        self.jacobi.apply(seen(&self.scaled, &bodies.responses), &mut bodies.displacements);
+        let per_time = 1.0 / self.dt;
+        for (load, push) in bodies.contact_loads.iter_mut().zip(&self.jacobi.sums) {
+            *load += push.scaled(per_time);
+        }
+    }
+
+    /// Lets contacts rebound that were hit faster than gravity alone would in two substeps.
+    pub fn restitute(&mut self, bodies: &mut Bodies) {
+        let (dt, slowest) = (self.dt, 2.0 * self.gravity * self.dt);
+        let mut rows = self.finder.contacts().iter().zip(self.finder.sites());
+        if rows.any(|(contact, site)| contact.rebounds(site, slowest)) {
+            for _ in 0..self.settings.restitution_iterations {
+                let velocities = &bodies.velocities;
+                self.jacobi.sweep(self.finder.rows(), bodies.len(), |contact, site| {
+                    if contact.rebounds(site, slowest) {
+                        contact.rebound(site, velocities, dt, slowest)
+                    } else {
+                        Default::default()
+                    }
+                });
+                self.jacobi.apply(seen(&self.scaled, &bodies.responses), &mut bodies.velocities);
+                for (load, push) in bodies.contact_loads.iter_mut().zip(&self.jacobi.sums) {
+                    *load += *push;
+                }
+            }
+        }
+        self.load_walls();
+    }
+
+    /// Adds the impulses of the substep to the walls they act on.
+    fn load_walls(&mut self) {
+        let rows = self.finder.contacts().iter().zip(self.finder.sites());
+        for (contact, site) in rows.filter(|(_, site)| site.wall != NONE) {
+            for (point, rebound) in contact.points().iter().zip(site.rebound) {
+                let normal = contact.normal * (point.normal_impulse / self.dt + rebound);
+                let tangent = contact.normal.perp() * (point.tangent_impulse / self.dt);
+                self.wall_impulses[site.wall as usize] -= normal + tangent;
+            }
+        }
+    }
+
+    /// Takes overlap out of the positions, without changing any velocity.
+    pub fn depenetrate(&mut self, bodies: &mut Bodies) {
+        let (how, dt) = (&self.settings.depenetration, self.dt);
+        let (displacements, sizes) = (&bodies.displacements, &bodies.sizes);
+        self.jacobi.sweep(self.finder.rows(), bodies.len(), |contact, _| {
+            let size = sizes[contact.a as usize];
+            let size = if contact.b == NONE { size } else { size.min(sizes[contact.b as usize]) };
+            contact.separate(displacements, how, size, dt)
+        });
+        for linked in self.joints.iter_mut().filter(|linked| is_movable(linked, bodies)) {
+            let pushes = linked.separate(bodies);
+            add_pair(&mut self.jacobi.sums, linked.bodies(), pushes);
+        }
+        self.corrections.clear();
+        self.corrections.resize(bodies.len(), Twist::ZERO);
+        self.jacobi.apply(seen(&self.scaled, &bodies.responses), &mut self.corrections);
+        for (pose, moved) in bodies.poses.iter_mut().zip(&self.corrections) {
+            pose.position += moved.linear;
+            pose.angle += moved.angular;
+        }
+    }
+
+    /// Ends a frame of length `frame_time` [s]: mean forces on walls, and sleep. Call it before
+    /// [`Bodies::finish_frame`].
+    pub fn finish_frame(&mut self, bodies: &mut Bodies, frame_time: f64) {
+        for (force, impulse) in self.wall_forces.iter_mut().zip(&mut self.wall_impulses) {
+            *force = std::mem::take(impulse) / frame_time;
+        }
+        if let Some(settings) = &self.settings.sleep {
+            let fell_asleep = self.islands.sleep(bodies, self.finder.contacts(), &self.joints, settings, frame_time);
+            if fell_asleep {
+                self.finder.freeze(bodies, self.dt);
+            }
+        }
+    }
+
+    /// Wakes a body with its island.
+    pub(crate) fn wake(&mut self, bodies: &mut Bodies, body: u32) {
+        self.islands.resize(bodies.len());
+        self.islands.wake_island(bodies, body as usize);
+    }
+
+    /// Puts bodies to sleep, those that touch each other as one island.
+    pub(crate) fn lay_down(&mut self, bodies: &mut Bodies, tired: &[u32]) {
+        if !tired.is_empty() {
+            self.islands.resize(bodies.len());
+            self.islands.lay_down(bodies, tired, self.finder.contacts(), &self.joints);
+            self.finder.freeze(bodies, self.dt);
+        }
+    }
+
+    /// Force of the bodies on each wall over the last frame, mean [N]; in the order of the walls.
+    pub fn wall_forces(&self) -> &[Vector64] {
+        &self.wall_forces
+    }
+
+    /// The contacts of the last substep between bodies that were awake.
+    pub fn points(&self) -> impl Iterator<Item = ContactPoint> + '_ {
+        let index = |index: u32| (index != NONE).then_some(index);
+        let read = move |contact: &Contact, site: &Site, k: usize| {
+            let point = &contact.points()[k];
+            ContactPoint {
+                body: contact.a,
+                other: index(contact.b),
+                wall: index(site.wall),
+                normal: contact.normal,
+                gap: point.gap,
+                normal_force: point.normal_impulse / (self.dt * self.dt) + site.rebound[k] / self.dt,
+                friction_force: point.tangent_impulse / (self.dt * self.dt),
+            }
+        };
+        let rows = self.finder.contacts().iter().zip(self.finder.sites());
+        rows.flat_map(move |(contact, site)| (0..contact.points().len()).map(move |k| read(contact, site, k)))
+    }
+
+    /// Joints with the force on the first body [N] and the torque of the motor [N m] in the last substep.
+    pub fn joint_loads(&self) -> impl Iterator<Item = (Joint, Vector64, f64)> + '_ {
+        let square = self.dt * self.dt;
+        self.joints.iter().map(move |linked| (linked.joint, linked.force() / square, linked.motor / square))
+    }
+}
+
+fn is_movable(linked: &Linked, bodies: &Bodies) -> bool {
+    let (a, b) = linked.bodies();
+    let movable = |id: u32| entry(&bodies.responses, id) != Response::default();
+    movable(a) || movable(b)
+}
+
+fn add_pair(sums: &mut [Twist], (a, b): (u32, u32), (on_a, on_b): (Twist, Twist)) {
+    sums[a as usize] += on_a;
+    if b != NONE {
+        sums[b as usize] -= on_b;
+    }
+}
+
+/// The responses that contacts see: the scaled ones, where there are any.
+fn seen<'a>(scaled: &'a [Response], own: &'a [Response]) -> &'a [Response] {
+    if scaled.is_empty() { own } else { scaled }
+}

@@ -1,0 +1,305 @@
+//! The pairs of pieces that may touch, sought anew only when a piece can have left the box it was sought with.
+
+use super::broad;
+use super::manifold::entry;
+use super::pieces::{Bounds, NONE, Pieces};
+use crate::math::Vector64;
+use crate::rigid::{Bodies, Surface, Twist};
+
+/// Room in the boxes that pairs are sought with, over the reach of a substep.
+const ROOM: f64 = 4.0;
+
+/// Two pieces, or a piece and a half-plane, that may touch.
+#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+pub(super) struct Pair {
+    /// Both by increasing index, which pairs are sorted by.
+    key: (u32, u32),
+    /// The piece whose body is the first of a contact, and the other.
+    pub pieces: (u32, u32),
+    /// Their bodies; the second is `NONE` for a wall.
+    pub bodies: (u32, u32),
+    pub wall: u32,
+    pub kind: Kind,
+    pub surface: Surface,
+    pub rolling_arm: f64,
+    /// Gap below which contacts are kept beside what speed demands [m].
+    pub near: f64,
+    /// How far the pieces may move before what touches is sought anew [m].
+    pub slack: f64,
+}
+
+/// What meets.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(super) enum Kind {
+    /// Two discs.
+    Discs,
+    /// A disc and a half-plane.
+    DiscOnPlane,
+    /// Any other piece and a half-plane.
+    OnPlane,
+    /// Two pieces that are not both discs.
+    Pieces,
+}
+
+/// The contacts of a pair in the last substep, or those it fell asleep with.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Span {
+    pub first: u32,
+    pub count: u32,
+    pub frozen: bool,
+}
+
+impl Span {
+    pub fn range(&self) -> std::ops::Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
+    }
+}
+
+/// Where the bodies of a pair are to each other.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Relation {
+    /// From the centre of mass of the second body to that of the first [m].
+    offset: Vector64,
+    angles: [f64; 2],
+}
+
+/// Where the bodies were when what touches was sought, and with what.
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
+pub(super) struct Sought {
+    pub at: Relation,
+    /// Gap below which contacts were found [m].
+    pub margin: f64,
+    /// How far they may move against each other until it is no longer known what touches [m].
+    pub room: f64,
+}
+
+impl Relation {
+    pub fn of((a, b): (u32, u32), bodies: &Bodies) -> Relation {
+        let (a, b) = (entry(&bodies.poses, a), entry(&bodies.poses, b));
+        Relation { offset: a.position - b.position, angles: [a.angle, b.angle] }
+    }
+
+    /// How far any two points of the bodies have moved against each other since, at most [m].
+    pub fn way(&self, since: &Relation, (a, b): (u32, u32), bodies: &Bodies) -> f64 {
+        let turned = |k: usize, body: u32| (self.angles[k] - since.angles[k]).abs() * entry(&bodies.reaches, body);
+        (self.offset - since.offset).length() + turned(0, a) + turned(1, b)
+    }
+}
+
+impl Sought {
+    pub const NEVER: Sought = Sought {
+        at: Relation { offset: Vector64::ZERO, angles: [0.0; 2] },
+        margin: f64::NEG_INFINITY,
+        room: f64::NEG_INFINITY,
+    };
+}
+
+/// All pairs that may touch, and how far bodies can move.
+#[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Pairs {
+    excluded: Vec<(u32, u32)>,
+    /// Boxes within which pieces may move before pairs are sought anew.
+    fat: Vec<Bounds>,
+    pub all: Vec<Pair>,
+    pub spans: Vec<Span>,
+    pub sought: Vec<Sought>,
+    /// Pairs of which a body can move.
+    pub active: Vec<Active>,
+    /// Which bodies could move when `active` was listed.
+    was_active: Vec<bool>,
+    /// How fast each body goes, and how fast its fastest point turns about its centre [m/s].
+    speeds: Vec<Twist>,
+    /// Twice the way that a body and one near it can go against each other in the substep, the most of all near [m].
+    closing: Vec<f64>,
+}
+
+/// A pair of which a body can move.
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
+pub(super) struct Active {
+    pub index: u32,
+    bodies: (u32, u32),
+}
+
+impl Pairs {
+    /// Two bodies that no longer collide with each other.
+    pub fn exclude(&mut self, a: u32, b: u32) {
+        self.excluded.push((a.min(b), a.max(b)));
+        self.excluded.sort_unstable();
+        self.fat.clear();
+    }
+
+    /// Half-planes come after all pieces: their indices grow with the number of those.
+    pub fn renumber(&mut self, pieces: &Pieces, added: usize) {
+        let first = (pieces.all.len() - added) as u32;
+        for pair in self.all.iter_mut().filter(|pair| added > 0 && pair.key.1 >= first) {
+            pair.key.1 += added as u32;
+            pair.pieces.1 += added as u32;
+        }
+    }
+
+    /// Makes the list hold all pairs that can touch in a substep of length `dt`.
+    pub fn update(&mut self, pieces: &Pieces, bodies: &Bodies, dt: f64, gravity: f64) {
+        self.measure_speeds(bodies, gravity * dt);
+        spread(&self.speeds, dt, self.active.iter().map(|active| active.bodies), &mut self.closing);
+        if !self.hold(pieces, bodies, dt) {
+            self.pair_up(pieces, bodies, dt);
+        } else if (0..bodies.len()).any(|id| self.was_active[id] != bodies.is_active(id)) {
+            self.list_active(bodies);
+        } else {
+            return;
+        }
+        spread(&self.speeds, dt, self.active.iter().map(|active| active.bodies), &mut self.closing);
+    }
+
+    /// How far apart a pair may be and still touch in the substep [m].
+    pub fn margin(&self, pair: &Pair) -> f64 {
+        let (a, b) = pair.bodies;
+        entry(&self.closing, a).max(entry(&self.closing, b)) + pair.near
+    }
+
+    /// Gravity adds this much in the substep [m/s].
+    fn measure_speeds(&mut self, bodies: &Bodies, gain: f64) {
+        self.speeds.clear();
+        self.speeds.extend(bodies.velocities.iter().zip(&bodies.reaches).map(|(velocity, reach)| Twist {
+            linear: velocity.linear,
+            angular: velocity.angular.abs() * reach + gain,
+        }));
+    }
+
+    /// Twice the distance a body can go in the substep: on its own, or hit by one near it [m].
+    fn reach(&self, body: u32, dt: f64) -> f64 {
+        let own = entry(&self.speeds, body);
+        (2.0 * (own.linear.length() + own.angular) * dt).max(entry(&self.closing, body))
+    }
+
+    /// Whether no piece can leave the box that pairs were sought with.
+    fn hold(&self, pieces: &Pieces, bodies: &Bodies, dt: f64) -> bool {
+        let moved = pieces.all.iter().zip(&pieces.bounds);
+        self.fat.len() == pieces.all.len()
+            && moved.zip(&self.fat).all(|((piece, bounds), fat)| {
+                piece.body == NONE
+                    || !bodies.is_active(piece.body as usize)
+                    || fat.holds(&bounds.grown(self.reach(piece.body, dt) + 0.01 * piece.size))
+            })
+    }
+
+    /// Seeks the pairs anew, with room for several substeps.
+    fn pair_up(&mut self, pieces: &Pieces, bodies: &Bodies, dt: f64) {
+        let mut found = self.seek(pieces, bodies, dt);
+        // Bodies near a fast one move as far as it does, once hit: give them the same room.
+        let before: Vec<f64> = (0..bodies.len() as u32).map(|body| self.reach(body, dt)).collect();
+        let of_bodies = found.iter().map(|&(a, b)| (pieces.body_of(a), pieces.body_of(b)));
+        spread(&self.speeds, dt, of_bodies, &mut self.closing);
+        let lacks =
+            |(body, &before): (u32, &f64)| self.reach(body, dt) > 2.0 * before + 0.01 * bodies.sizes[body as usize];
+        if (0..).zip(&before).any(lacks) {
+            found = self.seek(pieces, bodies, dt);
+        }
+        self.replace(pieces, &found);
+        self.list_active(bodies);
+    }
+
+    /// Takes over these pairs; those that were known keep what is known of them.
+    fn replace(&mut self, pieces: &Pieces, found: &[(u32, u32)]) {
+        let (spans, sought) = (std::mem::take(&mut self.spans), std::mem::take(&mut self.sought));
+        let mut old = std::mem::take(&mut self.all).into_iter().zip(spans.into_iter().zip(sought)).peekable();
+        for &key in found {
+            while old.next_if(|(pair, _)| pair.key < key).is_some() {}
+            let known = old.next_if(|(pair, _)| pair.key == key);
+            let (pair, (span, sought)) =
+                known.unwrap_or_else(|| (Pair::new(pieces, key), (Span::default(), Sought::NEVER)));
+            self.all.push(pair);
+            self.spans.push(span);
+            self.sought.push(sought);
+        }
+    }
+
+    fn seek(&mut self, pieces: &Pieces, bodies: &Bodies, dt: f64) -> Vec<(u32, u32)> {
+        let mut fat = std::mem::take(&mut self.fat);
+        fat.clear();
+        fat.extend(pieces.all.iter().zip(&pieces.bounds).map(|(piece, bounds)| match piece.body {
+            NONE => *bounds,
+            body => bounds.grown(ROOM * self.reach(body, dt) + 0.05 * piece.size),
+        }));
+        self.fat = fat;
+        broad::pairs(pieces, &self.fat, |a, b| may_touch(pieces, &self.excluded, bodies, a.min(b), a.max(b)))
+    }
+
+    fn list_active(&mut self, bodies: &Bodies) {
+        self.was_active.clear();
+        self.was_active.extend((0..bodies.len()).map(|id| bodies.is_active(id)));
+        let moving = |body: u32| body != NONE && self.was_active[body as usize];
+        let listed = self.all.iter().zip(0..).filter(|(pair, _)| moving(pair.bodies.0) || moving(pair.bodies.1));
+        self.active.clear();
+        self.active.extend(listed.map(|(pair, index)| Active { index, bodies: pair.bodies }));
+    }
+}
+
+impl Pair {
+    fn new(pieces: &Pieces, key: (u32, u32)) -> Pair {
+        // Pieces of walls come first: the body must be the first of the contact.
+        let (a, b) = if pieces.body_of(key.0) == NONE { (key.1, key.0) } else { key };
+        let piece = &pieces.all[a as usize];
+        let plane = pieces.half_plane(b);
+        let round = |piece: u32| pieces.view(piece).is_round();
+        let radius = |round: bool, radius: f64| if round { radius } else { f64::INFINITY };
+        let (surface, wall, size, rounding, rolling) = match plane {
+            Some(plane) => (&plane.surface, plane.wall, f64::INFINITY, 0.0, f64::INFINITY),
+            None => {
+                let other = &pieces.all[b as usize];
+                (&other.surface, other.wall, other.size, other.radius, radius(round(b), other.radius))
+            }
+        };
+        let surface = piece.surface.combined(surface);
+        let rolling = rolling.min(radius(round(a), piece.radius));
+        let kind = match (plane.is_some(), round(a), plane.is_none() && round(b)) {
+            (true, true, _) => Kind::DiscOnPlane,
+            (true, false, _) => Kind::OnPlane,
+            (false, true, true) => Kind::Discs,
+            _ => Kind::Pieces,
+        };
+        let least = |rounding: f64, round: bool| if round { f64::INFINITY } else { rounding };
+        let rounding = if plane.is_some() { f64::INFINITY } else { least(rounding, round(b)) };
+        Pair {
+            key,
+            pieces: (a, b),
+            bodies: (piece.body, pieces.body_of(b)),
+            wall,
+            kind,
+            surface,
+            rolling_arm: if rolling.is_finite() { surface.rolling_friction * rolling } else { 0.0 },
+            near: 0.01 * piece.size.min(size),
+            slack: 0.5 * least(piece.radius, round(a)).min(rounding),
+        }
+    }
+}
+
+/// Fills `closing`: bodies that move together hardly meet, and one that is hit by a third moves on no faster
+/// than that came.
+fn spread(speeds: &[Twist], dt: f64, pairs: impl Iterator<Item = (u32, u32)>, closing: &mut Vec<f64>) {
+    closing.clear();
+    closing.resize(speeds.len(), 0.0);
+    for (a, b) in pairs {
+        let (of_a, of_b) = (entry(speeds, a), entry(speeds, b));
+        let way = 2.0 * ((of_a.linear - of_b.linear).length() + of_a.angular + of_b.angular) * dt;
+        for body in [a, b] {
+            if let Some(most) = closing.get_mut(body as usize) {
+                *most = if way > *most { way } else { *most };
+            }
+        }
+    }
+}
+
+/// Whether two pieces (or a piece and a half-plane) can ever act on each other.
+fn may_touch(pieces: &Pieces, excluded: &[(u32, u32)], bodies: &Bodies, a: u32, b: u32) -> bool {
+    let piece = &pieces.all[a as usize];
+    let dynamic = |body: u32| body != NONE && bodies.is_dynamic(body as usize);
+    let Some(other) = pieces.all.get(b as usize) else { return dynamic(piece.body) };
+    let matched = |body: u32| body != NONE && bodies.elasticity(body as usize).is_some();
+    piece.body != other.body
+        && !matched(piece.body)
+        && !matched(other.body)
+        && (dynamic(piece.body) || dynamic(other.body))
+        && piece.filter.allows(&other.filter)
+        && excluded.binary_search(&(piece.body.min(other.body), piece.body.max(other.body))).is_err()
+}

@@ -1,0 +1,112 @@
+//! Rigid bodies: poses, masses, prescribed motions, static walls, and the solver of their contacts and joints.
+
+mod body_set;
+pub mod contact;
+mod motion;
+mod specification;
+mod wall;
+
+pub use crate::scene::BodyKind;
+pub use body_set::{Bodies, Response};
+pub use motion::{Motion, Repeat, Waypoint};
+pub use specification::{BodySpec, CollisionFilter, Elasticity, MassSpec, Rotation, Surface};
+pub use wall::{Boundary, Wall};
+
+use crate::math::Vector64;
+
+/// Place and orientation.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Pose {
+    /// Place [m].
+    pub position: Vector64,
+    /// Rotation, counter-clockwise [rad].
+    pub angle: f64,
+}
+
+impl Pose {
+    /// Body coordinates to world coordinates.
+    pub fn apply(&self, point: Vector64) -> Vector64 {
+        self.position + Vector64::from_angle(self.angle).rotate(point)
+    }
+}
+
+/// A linear and an angular part: a velocity, a displacement, or an impulse with its moment.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Twist {
+    /// Linear part, of the centre of mass.
+    pub linear: Vector64,
+    /// Angular part, counter-clockwise.
+    pub angular: f64,
+}
+
+impl Twist {
+    /// No motion.
+    pub const ZERO: Twist = Twist { linear: Vector64::ZERO, angular: 0.0 };
+
+    /// The linear part at a point with this arm from the centre of mass.
+    pub fn at(&self, arm: Vector64) -> Vector64 {
+        self.linear + arm.perp() * self.angular
+    }
+
+    /// All parts times a factor.
+    pub fn scaled(&self, factor: f64) -> Twist {
+        Twist { linear: self.linear * factor, angular: self.angular * factor }
+    }
+}
+
+impl std::ops::AddAssign for Twist {
+    fn add_assign(&mut self, other: Twist) {
+        self.linear += other.linear;
+        self.angular += other.angular;
+    }
+}
+
+impl std::ops::SubAssign for Twist {
+    fn sub_assign(&mut self, other: Twist) {
+        self.linear -= other.linear;
+        self.angular -= other.angular;
+    }
+}
+
+/// A rigid body, as it can be read from outside.
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Body {
+    /// Name given in the scene.
+    pub name: String,
+    /// How it moves.
+    pub kind: BodyKind,
+    /// Centre of mass [m].
+    pub position: Vector64,
+    /// Rotation, counter-clockwise [rad].
+    pub angle: f64,
+    /// Velocity of the centre of mass [m/s].
+    pub velocity: Vector64,
+    /// Angular velocity, counter-clockwise [rad/s].
+    pub angular_velocity: f64,
+    /// Mass [kg].
+    pub mass: f64,
+    /// Moment of inertia about the centre of mass [kg m^2].
+    pub inertia: f64,
+    /// Outline in body coordinates, counter-clockwise [m]; a disc has none.
+    pub outline: Vec<Vector64>,
+    /// Radius of a disc, 0 for a polygon [m].
+    pub radius: f64,
+    /// Lattice samples in body coordinates [m].
+    pub samples: Vec<Vector64>,
+    /// Area each sample stands for [m^2].
+    pub sample_area: f64,
+    /// Friction and restitution.
+    pub surface: Surface,
+    /// Whom it collides with.
+    pub filter: CollisionFilter,
+    /// Whether it is held still until something wakes it.
+    pub asleep: bool,
+    /// Force of the fluid over the last frame, mean [N].
+    pub fluid_force: Vector64,
+    /// Torque of the fluid about the centre of mass over the last frame, mean [N m].
+    pub fluid_torque: f64,
+    /// Force of contacts and joints over the last frame, mean [N].
+    pub contact_force: Vector64,
+    /// Torque of contacts and joints about the centre of mass over the last frame, mean [N m].
+    pub contact_torque: f64,
+}

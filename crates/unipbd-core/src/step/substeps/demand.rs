@@ -1,0 +1,125 @@
+//! What a frame demands of its substeps, and what pressure is believed, from the state alone.
+
+use super::controller::Demand;
+use super::statistics::FluidStatistics;
+use crate::math::{Vector, wide};
+use crate::observe::{Event, Severity};
+use crate::phase::Phase;
+use crate::step::world::World;
+
+/// Pressures up to this many times what depth and speed account for are believed.
+const PRESSURE_MARGIN: f64 = 8.0;
+/// The pressure of the multipliers decides the number of substeps only where it is this many times the
+/// expected one: they rise when the number changes, and must not change it in turn. A column that is let go
+/// swings to twice its weight; to answer that with more substeps pumps energy into the swing.
+const UNEXPECTED: f64 = 3.0;
+/// Speed, in spacings per frame, that a compressed liquid may always reach.
+const LEAST_SPEED: f64 = 2.0;
+
+impl World {
+    /// Decides the substeps of a frame, the stiffness and the pressure that is believed in it.
+    pub(in crate::step) fn choose_substeps(&mut self) -> u32 {
+        let liquids = self.survey(self.down(), is_liquid);
+        let fluids = if self.has_gas() { self.survey(self.down(), Phase::is_fluid) } else { liquids };
+        let demand = self.demand(liquids);
+        self.clock.pressure_limit = self.believed(fluids);
+        let (rule, last, frame) = (self.parts.substeps, self.clock.substeps, self.parts.frame_time);
+        let choice = rule.choose_after(last, frame, demand);
+        self.clock.stiffness = rule.stiffness_after(last, self.clock.stiffness, frame, demand, choice.substeps);
+        let capped = choice.wanted > choice.substeps;
+        if capped && !self.clock.capped {
+            let message = format!(
+                "substeps capped at {}: {} were wanted for speed {:.3} m/s and pressure {:.3} m^2/s^2; \
+                 raise solver.max_substeps to keep the target",
+                choice.substeps, choice.wanted, demand.speed, demand.pressure
+            );
+            self.events.push(Event { time: self.clock.time, severity: Severity::Warning, message });
+        }
+        self.clock.capped = capped;
+        self.choice = choice;
+        choice.substeps
+    }
+
+    pub(in crate::step) fn warn_of_cut(&mut self, effect: &str, granted: f64) {
+        let wanted = (f64::from(self.clock.substeps) / granted).ceil();
+        let message = format!(
+            "{effect} cut to {:.3} of what the scene asks for: {wanted} substeps per frame would bear it, {} were taken",
+            granted, self.clock.substeps
+        );
+        self.events.push(Event { time: self.clock.time, severity: Severity::Warning, message });
+    }
+
+    /// What the number of substeps follows from.
+    fn demand(&self, liquids: FluidStatistics) -> Demand {
+        let parts = &self.parts;
+        let emitted = parts.emitters.as_ref().map_or(0.0, |emitters| emitters.speed_max(self.clock.time));
+        let moving = if self.clock.step == 0 { self.fastest() } else { self.clock.speed };
+        let chain = parts.rigid.as_ref().map_or(0.0, |rigid| rigid.support_chain(wide(parts.gravity)));
+        // Pressure that the motion of the liquids within themselves can bring about.
+        let dynamic = self.square_of_relative_speed(liquids, is_liquid);
+        let known = if self.clock.step == 0 { 0.0 } else { liquids.pressure(self.clock.dt) };
+        let pressure = self.depth_pressure(liquids).max(dynamic).max(known / UNEXPECTED);
+        Demand { speed: moving.max(emitted), chain, pressure }
+    }
+
+    pub(in crate::step) fn fastest(&self) -> f64 {
+        let velocities = &self.parts.particles.velocity;
+        let dense = self.parts.particles.dense();
+        let square = self.parts.parallelism.max(dense, |row| velocities[row].length_squared());
+        f64::from(square.max(0.0)).sqrt()
+    }
+
+    /// Direction of gravity; zero without.
+    fn down(&self) -> Vector {
+        self.parts.gravity.normalize_or_zero()
+    }
+
+    fn has_gas(&self) -> bool {
+        self.parts.materials.iter().any(|material| material.phase == Phase::Gas)
+    }
+
+    /// Pressure over density at the bottom of what was surveyed, from its extent along gravity [m^2/s^2].
+    fn depth_pressure(&self, of: FluidStatistics) -> f64 {
+        let (gravity, depth) = (f64::from(self.parts.gravity.length()), of.depth());
+        if gravity > 0.0 && depth.is_finite() { gravity * depth * self.density_ratio() } else { 0.0 }
+    }
+
+    /// Width and depth of the liquids, across gravity and along it [m]; 0 without either.
+    pub(in crate::step) fn extent(&self) -> [f64; 2] {
+        let down = self.down();
+        let extents = [down.perp(), down].map(|direction| self.survey(direction, is_liquid).depth());
+        if extents.iter().all(|extent| extent.is_finite()) { extents } else { [0.0; 2] }
+    }
+
+    /// The pressure that a fluid as deep and as fast as this one can reach, with a wide margin [m^2/s^2].
+    pub(in crate::step) fn pressure_limit(&self) -> f64 {
+        self.believed(self.survey(self.down(), Phase::is_fluid))
+    }
+
+    fn believed(&self, fluids: FluidStatistics) -> f64 {
+        let least = LEAST_SPEED * self.parts.spacing / self.parts.frame_time;
+        PRESSURE_MARGIN * (self.depth_pressure(fluids) + 0.5 * fluids.square_of_speed()) + least * least
+    }
+
+    /// Density of the heaviest liquid in the scene over that of the lightest: a light liquid carries a heavy one.
+    fn density_ratio(&self) -> f64 {
+        let is_there = |index: usize| {
+            let particles = &self.parts.particles;
+            particles.material[..particles.dense()].iter().any(|&material| usize::from(material) == index)
+        };
+        let materials = self.parts.materials.iter().enumerate();
+        let liquids = materials.filter(|(_, material)| material.phase == Phase::Liquid);
+        let (mut light, mut heavy) = (f64::INFINITY, 0.0_f64);
+        for (index, liquid) in liquids {
+            // Only one that would change the ratio is looked for.
+            if (liquid.density < light || liquid.density > heavy) && is_there(index) {
+                (light, heavy) = (light.min(liquid.density), heavy.max(liquid.density));
+            }
+        }
+        if heavy > 0.0 { heavy / light } else { 1.0 }
+    }
+}
+
+fn is_liquid(phase: Phase) -> bool {
+    phase == Phase::Liquid
+}
