@@ -7,8 +7,10 @@ mod bars;
 mod groups;
 mod measure;
 mod scenes;
+mod sources;
 
 pub use bars::{Bars, bars, full_size, say};
 pub use groups::{Kick, Prescribed};
 pub use measure::{Spread, crowded, is_near, kinetic_energy, mean_of, of_phase};
 pub use scenes::{build, load, repository, run, scene, shipped};
+pub use sources::{code_of, rust_files};

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-use unipbd_tests::repository;
+use unipbd_tests::{code_of as code, repository, rust_files as files};
 
 /// The modules of the core in layers, the lowest first. A module imports from layers below its own only.
 /// The table of ARCHITECTURE.md lists the same layers.
@@ -32,32 +32,6 @@ const CONSTRAINTS: [&str; 6] = ["adhesion", "batch", "density", "distance", "mas
 
 fn core() -> PathBuf {
     repository().join("crates/unipbd-core/src")
-}
-
-/// All Rust files under a folder, sorted.
-fn files(folder: &Path) -> Vec<PathBuf> {
-    let mut found = Vec::new();
-    let mut open = vec![folder.to_owned()];
-    while let Some(folder) = open.pop() {
-        for entry in std::fs::read_dir(&folder).expect("the folder can be read") {
-            let path = entry.expect("the entry can be read").path();
-            if path.is_dir() {
-                open.push(path);
-            } else if path.extension().is_some_and(|extension| extension == "rs") {
-                found.push(path);
-            }
-        }
-    }
-    found.sort();
-    found
-}
-
-/// The code of a file: without comments, and without the unit tests at its end.
-fn code(path: &Path) -> String {
-    let text = std::fs::read_to_string(path).expect("the file is text");
-    let text = text.split("\n#[cfg(test)]\nmod tests").next().unwrap_or_default();
-    let without_comment = |line: &str| line.split("//").next().unwrap_or_default().to_owned();
-    text.lines().map(without_comment).collect::<Vec<_>>().join("\n")
 }
 
 /// The top module a file belongs to.

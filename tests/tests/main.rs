@@ -5,6 +5,7 @@ mod conservation;
 mod determinism;
 mod emitters;
 mod filled_gas;
+mod import_circles;
 mod liquids;
 mod obstacles;
 mod plume;

@@ -12,7 +12,7 @@ use crate::effects::{
     VorticityConfinement,
 };
 use crate::math::{Vector, Vector64, real, vector};
-use crate::neighbors::{Cover, ListCost, Neighbors};
+use crate::neighbors::{ListCost, Neighbors, SearchPositions};
 use crate::observe::Material;
 use crate::parallel::Parallelism;
 use crate::particles::{NewParticle, OptionalColumns, Particles};
@@ -69,9 +69,9 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     let settings = DensitySettings::new(scene);
     let effects = effects(scene, seed);
     let pressure_scale = f64::from(settings.volume) * settings.moment;
-    let cover = match settings.gradients {
-        GradientPoint::Predicted => Cover::Predicted,
-        GradientPoint::Start | GradientPoint::Early | GradientPoint::Middle => Cover::StartAndPredicted,
+    let search_positions = match settings.gradients {
+        GradientPoint::Predicted => SearchPositions::Predicted,
+        GradientPoint::Start | GradientPoint::Early | GradientPoint::Middle => SearchPositions::StartAndPredicted,
     };
     let least_skin = if effects.is_empty() && scene.smoke.is_empty() { 0.0 } else { LEAST_SKIN * scene.spacing };
     let removal = RemovalRules::new(scene, periodic);
@@ -99,7 +99,7 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         forces: scene.materials().map(|material| body_force(material, scene)).collect(),
         walls: Walls::new(scene),
         neighbors: Neighbors::new(periodic, reach, real(least_skin), cost),
-        cover,
+        search_positions,
         coarse: (scene.solver.coarse_projection > 0)
             .then(|| CoarseProjection::new(real(scene.spacing), scene.solver.coarse_projection)),
         groups,

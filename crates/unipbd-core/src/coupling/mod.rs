@@ -9,7 +9,7 @@ use crate::particles::Particles;
 use crate::rigid::contact::Contacts;
 use crate::rigid::{Bodies, Body};
 use crate::rows::RowIndex;
-use push_out::Trespasser;
+use push_out::Penetration;
 
 /// A little more than half the diagonal of a lattice cell [spacings].
 const LEAST_NEAR: f64 = 0.75;
@@ -25,7 +25,7 @@ pub struct RigidBodies {
     near: Vec<Real>,
     /// Path in a substep, of a particle or a body, from which on the way counts and not the place alone [m].
     far: Real,
-    trespassers: Vec<Trespasser>,
+    penetrations: Vec<Penetration>,
     /// Ends of ropes that move with bodies.
     tied: Vec<Tied>,
     /// Bodies that are particles, drawn back to their shapes.
@@ -61,7 +61,7 @@ impl RigidBodies {
             first_sample: first,
             near,
             far: (0.5 * spacing) as Real,
-            trespassers: Vec::new(),
+            penetrations: Vec::new(),
             tied: Vec::new(),
             matched: Vec::new(),
         };
@@ -229,10 +229,10 @@ impl RigidBodies {
     }
 
     /// Puts the bodies to sleep whose samples do.
-    pub(crate) fn lay_down(&mut self, particles: &Particles, rows: &RowIndex) {
+    pub(crate) fn put_to_sleep(&mut self, particles: &Particles, rows: &RowIndex) {
         let tired = |&body: &u32| !self.bodies.is_asleep(body) && self.sleeps_with_samples(body, particles, rows);
         let tired: Vec<u32> = (0..self.bodies.len() as u32).filter(tired).collect();
-        self.contacts.lay_down(&mut self.bodies, &tired);
+        self.contacts.put_to_sleep(&mut self.bodies, &tired);
     }
 
     /// Ends a frame: sleep, mean loads.

@@ -10,7 +10,7 @@ use crate::math::{Vector, Vector64, vector, wide};
 use crate::neighbors::Neighbors;
 use crate::particles::Particles;
 use crate::phase::Phase;
-use crate::rigid::{Body, Response};
+use crate::rigid::{Body, InverseMass};
 use crate::rows::RowIndex;
 use crate::shapes::{Nearest, Shape, first_crossing, nearest_on_polygon};
 use crate::walls::Walls;
@@ -21,7 +21,7 @@ const TURNS: usize = 4;
 
 /// A fluid particle that may be inside a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
-pub(super) struct Trespasser {
+pub(super) struct Penetration {
     row: u32,
     /// Bodies that cannot give way come last: they have the last word.
     fixed: bool,
@@ -30,7 +30,7 @@ pub(super) struct Trespasser {
 
 impl RigidBodies {
     /// Moves fluid particles out of bodies; particle and body share the momentum.
-    pub(crate) fn expel(
+    pub(crate) fn push_out(
         &mut self,
         particles: &mut Particles,
         neighbors: &Neighbors,
@@ -38,18 +38,18 @@ impl RigidBodies {
         rows: &RowIndex,
         dt: f64,
     ) {
-        self.find_trespassers(particles, neighbors, rows);
+        self.find_penetrations(particles, neighbors, rows);
         let swept = self.find_fast(particles);
         let mut start = (u32::MAX, Vector::ZERO);
-        for k in 0..self.trespassers.len() {
-            let Trespasser { row, body, .. } = self.trespassers[k];
+        for k in 0..self.penetrations.len() {
+            let Penetration { row, body, .. } = self.penetrations[k];
             if swept.binary_search(&row).is_err() {
                 if start.0 != row {
                     start = (row, particles.start[row as usize]);
                 }
                 let at = self.on_body(body, wide(particles.position[row as usize]), End::Predicted);
                 let way = nearest(&self.bodies.views()[body as usize], at);
-                self.push_out((row, body), way, start.1, particles, walls, dt);
+                self.resolve((row, body), way, start.1, particles, walls, dt);
             }
         }
         for row in swept {
@@ -100,11 +100,11 @@ impl RigidBodies {
         if way.distance >= 0.0 || (from - to).dot(way.normal) < -way.distance - slack {
             way = crossing(view, from, to).unwrap_or(way);
         }
-        self.push_out((row, body), way, start, particles, walls, dt)
+        self.resolve((row, body), way, start, particles, walls, dt)
     }
 
     fn is_fixed(&self, body: u32) -> bool {
-        self.bodies.response(body) == Response::default()
+        self.bodies.response(body) == InverseMass::default()
     }
 
     /// Whether a path may meet a body: whether their bounding discs do.
@@ -125,7 +125,7 @@ impl RigidBodies {
     }
 
     /// Moves a particle out of a body along the face that `way` names; tells whether it was inside.
-    fn push_out(
+    fn resolve(
         &mut self,
         (row, body): (u32, u32),
         way: Nearest,
@@ -159,8 +159,8 @@ impl RigidBodies {
         true
     }
 
-    fn find_trespassers(&mut self, particles: &Particles, neighbors: &Neighbors, rows: &RowIndex) {
-        let mut found = std::mem::take(&mut self.trespassers);
+    fn find_penetrations(&mut self, particles: &Particles, neighbors: &Neighbors, rows: &RowIndex) {
+        let mut found = std::mem::take(&mut self.penetrations);
         found.clear();
         let periodic = neighbors.periodic();
         self.each_sample(rows, |body, _, sample| {
@@ -172,13 +172,13 @@ impl RigidBodies {
             neighbors.for_each(sample, |row| {
                 let apart = periodic.min_image(particles.position[row] - x);
                 if is_movable(particles, row) && apart.length_squared() < near * near {
-                    found.push(Trespasser { row: row as u32, fixed, body });
+                    found.push(Penetration { row: row as u32, fixed, body });
                 }
             });
         });
         found.sort_unstable();
         found.dedup();
-        self.trespassers = found;
+        self.penetrations = found;
     }
 
     /// Rows that went far in this substep, and those in the way of a body that did.

@@ -78,7 +78,7 @@ impl RigidBodies {
     }
 
     /// Gives the samples of bodies that are particles the velocities of their bodies.
-    pub(crate) fn stir_particles(&self, bodies: &[(u32, Twist)], particles: &mut Particles, rows: &RowIndex) {
+    pub(crate) fn set_sample_velocities(&self, bodies: &[(u32, Twist)], particles: &mut Particles, rows: &RowIndex) {
         for &(body, velocity) in bodies.iter().filter(|(body, _)| self.bodies.elasticity(*body as usize).is_some()) {
             let center = self.bodies.pose(body).position;
             let ids = self.first_sample[body as usize]..self.first_sample[body as usize + 1];

@@ -51,7 +51,7 @@ impl Solver {
         if let Some(rigid) = parts.rigid.as_mut().filter(|_| !edit.bodies.is_empty()) {
             edit.bodies.iter().for_each(|&(body, velocity)| rigid.bodies.set_velocity(body, velocity));
             rigid.settle_samples(&mut parts.particles, rows);
-            rigid.stir_particles(&edit.bodies, &mut parts.particles, rows);
+            rigid.set_sample_velocities(&edit.bodies, &mut parts.particles, rows);
         }
     }
 

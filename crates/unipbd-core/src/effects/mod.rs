@@ -49,7 +49,7 @@ pub trait Effect: Send + Sync {
     }
 
     /// The part of what the scene asks for that was stable in the last substep: 1 unless it was cut.
-    fn granted(&self) -> f64 {
+    fn stable_fraction(&self) -> f64 {
         1.0
     }
 }

@@ -22,7 +22,7 @@ const LEAST_DISTANCE: f64 = 0.25;
 ///
 /// Large nu dt/dx^2 takes the stages of the Runge-Kutta-Legendre rule of first order (Meyer et al.
 /// 2014): s of them are stable for (s^2 + s)/2 explicit steps, and each keeps momentum. Beyond the
-/// last stage the viscosity is cut to what is stable, and [`granted`](Effect::granted) says so.
+/// last stage the viscosity is cut to what is stable, and [`stable_fraction`](Effect::stable_fraction) says so.
 pub struct ShearViscosity {
     kernel: Kernel,
     coverage: Coverage,
@@ -34,7 +34,7 @@ pub struct ShearViscosity {
     /// Largest rate at which a velocity difference decays [1/s].
     fastest: f64,
     /// Part of the viscosity that the last substep could bear.
-    granted: f64,
+    stable_fraction: f64,
     weights: Vec<Real>,
     sums: Vec<Vector>,
     now: Vec<Vector>,
@@ -56,7 +56,7 @@ impl ShearViscosity {
                 least_distance: real(LEAST_DISTANCE * scene.spacing),
                 inverse_density: scene.materials().map(|m| real(1.0 / m.density().max(1e-30))).collect(),
                 fastest: fastest_decay(scene, &kernel),
-                granted: 1.0,
+                stable_fraction: 1.0,
                 root,
                 weights: Vec::new(),
                 sums: Vec::new(),
@@ -148,7 +148,7 @@ impl Effect for ShearViscosity {
         self.before.extend_from_slice(velocities);
         // One explicit step is stable while its fastest decay stays below 2.
         let (count, part) = stages(f64::from(now.dt) * self.fastest / 2.0);
-        self.granted = part;
+        self.stable_fraction = part;
         let width = 2.0 / f64::from(count * (count + 1)) * part;
         for stage in 1..=count {
             let s = f64::from(stage);
@@ -173,8 +173,8 @@ impl Effect for ShearViscosity {
         });
     }
 
-    fn granted(&self) -> f64 {
-        self.granted
+    fn stable_fraction(&self) -> f64 {
+        self.stable_fraction
     }
 }
 

@@ -1,6 +1,7 @@
 //! Rows sorted by cell, and the index that finds the rows near a point.
 
 use super::cells::{Cells, Span};
+use super::cursor::Cursor;
 use super::order::{CountingSort, Extent};
 use super::sparse::SparseIndex;
 use crate::bytes::held;
@@ -13,13 +14,6 @@ use std::ops::Range;
 const CELLS_PER_ROW: u64 = 8;
 /// ...and always up to this many.
 const CELLS_ALWAYS: u64 = 4096;
-
-/// Remembers where the last search in a sparse index ended: neighbouring searches end nearby.
-/// It changes the cost of a search, never its result.
-#[derive(Clone, Debug, Default)]
-pub struct Cursor {
-    pub(super) hints: [(u32, u32); 4],
-}
 
 /// How cells are found.
 enum Index {

@@ -6,7 +6,7 @@
 //! with themselves; the padding is told by the counts, never by the distance, so that coincident
 //! particles remain neighbours. The number of columns is even: passes take two at a time. Blocks are kept in chunks that are built and read in parallel.
 
-use super::grid::{Cursor, Grid};
+use super::{Cursor, Grid};
 use crate::bytes::held;
 use crate::math::{Real, Vector};
 use crate::neighbors::near::{self, Found, Near, Work};

@@ -9,6 +9,7 @@
 
 mod cells;
 mod cost;
+mod cursor;
 mod grid;
 mod list;
 pub(crate) mod near;
@@ -19,8 +20,9 @@ mod sparse;
 pub(crate) mod weigh;
 
 pub use cost::ListCost;
-pub use grid::{Cursor, Grid};
+pub use cursor::Cursor;
+pub use grid::Grid;
 pub use list::{Block, Chunk, Entries, NeighborList};
 pub(crate) use search::SavedList;
-pub use search::{Cover, Neighbors, Prepared};
+pub use search::{Neighbors, Prepared, SearchPositions};
 pub use skin::{Motion, SkinList};

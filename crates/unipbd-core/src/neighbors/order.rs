@@ -4,7 +4,7 @@
 use super::cells::{Cell, Cells};
 use crate::bytes::held;
 use crate::math::Vector;
-use crate::parallel::{CHUNK_ROWS, Parallelism, Spread};
+use crate::parallel::{Aabb, CHUNK_ROWS, Parallelism};
 use std::ops::Range;
 
 /// The bounding box of the occupied cells.
@@ -30,7 +30,7 @@ impl Extent {
 
     pub fn of(positions: &[Vector], cells: &Cells, parallelism: Parallelism) -> Extent {
         if cells.keep_order() && !positions.is_empty() {
-            let spread = Spread::of(positions, parallelism);
+            let spread = Aabb::of(positions, parallelism);
             if spread.is_finite() {
                 let (low, high) = spread.corners();
                 return Extent { first: cells.cell(low), last: cells.cell(high) };

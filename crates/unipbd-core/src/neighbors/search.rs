@@ -10,7 +10,7 @@ use std::ops::Range;
 
 /// For which positions a list must hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Cover {
+pub enum SearchPositions {
     /// The predicted ones only.
     Predicted,
     /// Those at the start of the substep too.
@@ -187,17 +187,17 @@ impl Neighbors {
         self.invalidate();
     }
 
-    /// Makes sure the list holds every pair for the positions to cover; re-sorts all rows if it must
+    /// Makes sure the list holds every pair for the given positions; re-sorts all rows if it must
     /// be made anew.
-    pub fn prepare(&mut self, particles: &mut Particles, cover: Cover, parallelism: Parallelism) -> Prepared {
-        if self.holds(particles, cover, parallelism) {
+    pub fn prepare(&mut self, particles: &mut Particles, at: SearchPositions, parallelism: Parallelism) -> Prepared {
+        if self.holds(particles, at, parallelism) {
             return Prepared::Kept;
         }
-        self.rebuild(particles, cover, parallelism);
+        self.rebuild(particles, at, parallelism);
         Prepared::Rebuilt
     }
 
-    fn holds(&mut self, particles: &Particles, cover: Cover, parallelism: Parallelism) -> bool {
+    fn holds(&mut self, particles: &Particles, at: SearchPositions, parallelism: Parallelism) -> bool {
         if self.list.reference().len() != particles.listed() || self.list.skin() < 0.0 {
             return false;
         }
@@ -205,7 +205,7 @@ impl Neighbors {
         if !self.list.covers(&self.motion) {
             return false;
         }
-        cover == Cover::Predicted || self.list.covers(&self.moved_to(particles.starts(), parallelism))
+        at == SearchPositions::Predicted || self.list.covers(&self.moved_to(particles.starts(), parallelism))
     }
 
     /// How the rows of the list have moved since it was built.
@@ -222,24 +222,24 @@ impl Neighbors {
         self.still.iter().any(|still| still.rows() > 0)
     }
 
-    fn rebuild(&mut self, particles: &mut Particles, cover: Cover, parallelism: Parallelism) {
+    fn rebuild(&mut self, particles: &mut Particles, at: SearchPositions, parallelism: Parallelism) {
         if !self.still_sorted {
             self.sort_still(particles, parallelism);
         }
         let (awake, dense) = (particles.awake(), particles.dense());
         let (start, end) = (&particles.starts()[..awake], &particles.positions()[..awake]);
         let step = self.seen(Motion::between(start, end, &self.grid, parallelism)).needed_skin();
-        let skin = self.skin(step, cover);
-        self.set_reference(particles, cover, parallelism);
+        let skin = self.skin(step, at);
+        self.set_reference(particles, at, parallelism);
         // Smoke follows the dense rows only to stay near them in memory.
         let radius = SkinList::list_radius(self.radius, skin);
-        let reference = Self::reference(&self.reference, particles, cover);
+        let reference = Self::reference(&self.reference, particles, at);
         let (indexed, loose) = (&reference[..awake], &reference[dense..]);
         let (order, loose_order) = self.grid.order_both(indexed, loose, radius, parallelism);
         particles.reorder(0, order, parallelism, &mut self.scratch);
         particles.reorder(dense, loose_order, parallelism, &mut self.scratch);
-        self.set_reference(particles, cover, parallelism);
-        let reference = Self::reference(&self.reference, particles, cover);
+        self.set_reference(particles, at, parallelism);
+        let reference = Self::reference(&self.reference, particles, at);
         Self::build_list(&mut self.list, &self.grid, &self.still, reference, (self.radius, skin), parallelism);
         self.motion = self.moved_to(particles.positions(), parallelism);
     }
@@ -273,16 +273,16 @@ impl Neighbors {
     }
 
     /// The skin for particles that come nearer to each other by up to `step` per substep.
-    fn skin(&self, step: Real, cover: Cover) -> Real {
+    fn skin(&self, step: Real, at: SearchPositions) -> Real {
         let wanted = self.cost.skin(step / self.radius) * self.radius;
         // From the middle of the substep both its ends are half a step away.
-        let needed = if cover == Cover::StartAndPredicted { 0.5 * step * 1.001 } else { 0.0 };
+        let needed = if at == SearchPositions::StartAndPredicted { 0.5 * step * 1.001 } else { 0.0 };
         wanted.max(self.least_skin).max(needed)
     }
 
     /// Finds the positions to make a list at, where they are not the predicted ones.
-    fn set_reference(&mut self, particles: &Particles, cover: Cover, parallelism: Parallelism) {
-        if cover == Cover::Predicted {
+    fn set_reference(&mut self, particles: &Particles, at: SearchPositions, parallelism: Parallelism) {
+        if at == SearchPositions::Predicted {
             return;
         }
         let (start, end) = (particles.starts(), particles.positions());
@@ -300,10 +300,10 @@ impl Neighbors {
     }
 
     /// The positions to make a list at.
-    fn reference<'a>(middle: &'a [Vector], particles: &'a Particles, cover: Cover) -> &'a [Vector] {
-        match cover {
-            Cover::Predicted => particles.positions(),
-            Cover::StartAndPredicted => middle,
+    fn reference<'a>(middle: &'a [Vector], particles: &'a Particles, at: SearchPositions) -> &'a [Vector] {
+        match at {
+            SearchPositions::Predicted => particles.positions(),
+            SearchPositions::StartAndPredicted => middle,
         }
     }
 

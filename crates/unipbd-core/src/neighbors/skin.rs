@@ -5,11 +5,11 @@
 //! from its reference and c any common drift, |d_i - d_j| <= 2 max |d - c|, so the list holds while
 //! 2 max |d - c| <= skin: a body of fluid that only travels needs no new list.
 
-use super::grid::{Cursor, Grid};
 use super::list::NeighborList;
+use super::{Cursor, Grid};
 use crate::bytes::held;
 use crate::math::{Real, Vector, larger};
-use crate::parallel::{GROUP, Parallelism, Spread};
+use crate::parallel::{Aabb, GROUP, Parallelism};
 use crate::periodic::Periodic;
 use std::ops::Range;
 
@@ -63,11 +63,11 @@ impl Moves<'_> {
         let all = self.parallelism.reduce(
             self.from.len(),
             |rows| {
-                let mut spread = Spread::NONE;
+                let mut spread = Aabb::NONE;
                 self.each_four(rows, |moved| spread.add(moved));
                 spread
             },
-            Spread::join,
+            Aabb::join,
         );
         let (low, high) = all.corners();
         let (drift, half) = (low * 0.5 + high * 0.5, high * 0.5 - low * 0.5);

@@ -1,7 +1,7 @@
 //! The index of a domain too wide for a table of all its cells: the occupied cells alone, sorted.
 
 use super::cells::{Cell, Cells};
-use super::grid::Cursor;
+use super::cursor::Cursor;
 use crate::bytes::held;
 use crate::math::Vector;
 use crate::parallel::Parallelism;

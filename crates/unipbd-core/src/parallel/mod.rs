@@ -3,13 +3,13 @@
 //! Outputs are written in fixed chunks, and reductions follow a fixed binary tree of chunks, so
 //! that even floating-point sums come out the same on any number of threads.
 
-mod spread;
+mod aabb;
 
 use crate::math::{Real, larger};
 use rayon::prelude::*;
 use std::ops::Range;
 
-pub(crate) use spread::{GROUP, Spread};
+pub(crate) use aabb::{Aabb, GROUP};
 
 /// Rows one task works on: small enough to balance, large enough to hide the cost of a task.
 pub const CHUNK_ROWS: usize = 512;

@@ -2,7 +2,7 @@
 
 use super::spans::BLOCK;
 use crate::math::{Real, Vector};
-use crate::parallel::{Parallelism, Spread};
+use crate::parallel::{Aabb, Parallelism};
 use crate::particles::Particles;
 use crate::walls::Walls;
 use std::ops::Range;
@@ -81,7 +81,7 @@ impl Lattice {
     pub fn cover(&mut self, particles: &Particles, walls: &Walls, parallelism: Parallelism) {
         self.origin = walls.anchor();
         let rows = particles.dense();
-        let (low, high) = Spread::of(&particles.start[..rows], parallelism).corners();
+        let (low, high) = Aabb::of(&particles.start[..rows], parallelism).corners();
         let cells = |at: Real, axis: usize| {
             ((at - self.origin[axis]) / self.cell).floor().clamp(-FARTHEST_CELL, FARTHEST_CELL) as i32
         };

@@ -29,7 +29,7 @@ use transfer::Transfer;
 /// Cells of the grid are this many spacings wide: four particles each.
 const CELL: Real = 2.0;
 /// Part of the density error of a cell that the grid takes away in one substep, by moves alone.
-const TAKEN_BACK: Real = 0.06;
+const DENSITY_RELAXATION: Real = 0.06;
 /// Steps of the solver for moves: they take back little, and what is left waits for the next substep. One step leaves
 /// enough to cost momentum (2e-5 of that of a drop drawn out).
 const STEPS_OF_MOVES: u32 = 2;
@@ -67,8 +67,8 @@ impl CoarseProjection {
         let area = self.spacing * self.spacing;
         self.lattice.cover(particles, walls, parallelism);
         if self.openings.measure(&self.lattice, walls, parallelism) {
-            self.multigrid.lay(&self.lattice, &self.openings, parallelism);
-            self.system.lay(self.lattice.len());
+            self.multigrid.allocate(&self.lattice, &self.openings, parallelism);
+            self.system.allocate(self.lattice.len());
         } else {
             self.system.clear(self.multigrid.spans());
         }
@@ -80,7 +80,7 @@ impl CoarseProjection {
         system.couple(lattice, openings, finest, parallelism);
         multigrid.coarsen(parallelism);
         system.read_flow(fields, multigrid.spans(), parallelism);
-        system.demand(lattice, openings, fields, (dt, TAKEN_BACK), multigrid.spans(), parallelism);
+        system.assemble_right_side(lattice, openings, fields, (dt, DENSITY_RELAXATION), multigrid.spans(), parallelism);
         multigrid.solve(&system.divergence, &mut system.pressure, self.steps, parallelism);
         multigrid.solve(&system.excess, &mut system.potential, STEPS_OF_MOVES, parallelism);
         system.difference(lattice, openings, multigrid.spans(), parallelism);

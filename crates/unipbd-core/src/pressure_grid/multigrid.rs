@@ -25,7 +25,7 @@ pub(super) struct Multigrid {
 
 impl Multigrid {
     /// Lays all grids, in the room that walls leave.
-    pub fn lay(&mut self, lattice: &Lattice, openings: &Openings, parallelism: Parallelism) {
+    pub fn allocate(&mut self, lattice: &Lattice, openings: &Openings, parallelism: Parallelism) {
         let (mut width, mut height, mut count) = (lattice.width, lattice.height, 1);
         while width.max(height) > COARSEST {
             (width, height, count) = (coarser(width), coarser(height), count + 1);

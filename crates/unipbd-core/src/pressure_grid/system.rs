@@ -56,7 +56,7 @@ pub(super) struct System {
 
 impl System {
     /// Makes all columns anew for a lattice of this many cells.
-    pub fn lay(&mut self, cells: usize) {
+    pub fn allocate(&mut self, cells: usize) {
         for column in [
             &mut self.depth,
             &mut self.along_x,
@@ -140,7 +140,7 @@ impl System {
 
     /// Sets what the pressure is to undo within a substep of length `dt` [s], and the part of what is too much that
     /// moves are to take back.
-    pub fn demand(
+    pub fn assemble_right_side(
         &mut self,
         lattice: &Lattice,
         openings: &Openings,

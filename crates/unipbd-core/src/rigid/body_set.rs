@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 
 /// How a body answers to a push: its inverse mass and inertia, both 0 for what nothing moves.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
-pub struct Response {
+pub struct InverseMass {
     /// Inverse mass [1/kg].
     pub linear: f64,
     /// Inverse moment of inertia [1/(kg m^2)].
@@ -37,9 +37,9 @@ pub struct Bodies {
     /// Displacement u over the running substep.
     pub(crate) displacements: Vec<Twist>,
     /// What each body answers with when awake.
-    pub(crate) awake_responses: Vec<Response>,
+    pub(crate) awake_responses: Vec<InverseMass>,
     /// The same, and 0 while asleep.
-    pub(crate) responses: Vec<Response>,
+    pub(crate) inverse_masses: Vec<InverseMass>,
     pub(crate) asleep: Vec<bool>,
     /// How those deform that are particles, drawn back to their shape: their pose only follows.
     matched: Vec<Option<Elasticity>>,
@@ -86,10 +86,10 @@ impl Bodies {
         let inertia = mass * moments.second / moments.area;
         let matched = spec.matched.filter(|_| spec.kind == BodyKind::Dynamic);
         let response = match (spec.kind, spec.rotation) {
-            _ if matched.is_some() => Response::default(),
-            (BodyKind::Dynamic, Rotation::Free) => Response { linear: 1.0 / mass, angular: 1.0 / inertia },
-            (BodyKind::Dynamic, Rotation::Locked) => Response { linear: 1.0 / mass, angular: 0.0 },
-            _ => Response::default(),
+            _ if matched.is_some() => InverseMass::default(),
+            (BodyKind::Dynamic, Rotation::Free) => InverseMass { linear: 1.0 / mass, angular: 1.0 / inertia },
+            (BodyKind::Dynamic, Rotation::Locked) => InverseMass { linear: 1.0 / mass, angular: 0.0 },
+            _ => InverseMass::default(),
         };
         let motion = if spec.kind == BodyKind::Kinematic { spec.motion.clone() } else { Motion::Still };
         let velocity = match spec.kind {
@@ -103,7 +103,7 @@ impl Bodies {
         self.velocities.push(velocity);
         self.displacements.push(Twist::ZERO);
         self.awake_responses.push(response);
-        self.responses.push(response);
+        self.inverse_masses.push(response);
         self.asleep.push(false);
         self.matched.push(matched);
         self.contact_loads.push(Twist::ZERO);
@@ -125,9 +125,9 @@ impl Bodies {
         let bodies = self.len();
         let same_kind = self.matched == other.matched;
         let twists = [&self.velocities, &self.displacements, &self.contact_loads, &self.fluid_loads];
-        let responses = [&self.awake_responses, &self.responses];
+        let inverse_masses = [&self.awake_responses, &self.inverse_masses];
         let whole = twists.iter().all(|column| column.len() == bodies)
-            && responses.iter().all(|column| column.len() == bodies)
+            && inverse_masses.iter().all(|column| column.len() == bodies)
             && [&self.reaches, &self.sizes].iter().all(|column| column.len() == bodies)
             && [&self.asleep, &self.pushed].iter().all(|column| column.len() == bodies)
             && self.cores == other.cores
@@ -177,8 +177,8 @@ impl Bodies {
     }
 
     /// Inverse mass and inertia as constraints must see them: 0 for what sleeps or is scripted.
-    pub fn response(&self, id: u32) -> Response {
-        self.responses[id as usize]
+    pub fn response(&self, id: u32) -> InverseMass {
+        self.inverse_masses[id as usize]
     }
 
     /// Whether a body is asleep.
@@ -252,7 +252,7 @@ impl Bodies {
     /// Loads a body with a force and a torque about its centre of mass over a substep of length `dt`,
     /// and counts both as the fluid's. Works for any kind; only dynamic bodies move.
     pub fn load(&mut self, id: u32, force: Vector64, torque: f64, dt: f64) {
-        let response = self.responses[id as usize];
+        let response = self.inverse_masses[id as usize];
         self.push(id, force * (response.linear * dt * dt), torque * response.angular * dt * dt);
         self.fluid_loads[id as usize] += Twist { linear: force * dt, angular: torque * dt };
     }
@@ -287,7 +287,7 @@ impl Bodies {
     /// Puts a body to sleep: no velocity, and pushes do not move it.
     pub(crate) fn fall_asleep(&mut self, id: usize) {
         self.asleep[id] = true;
-        self.responses[id] = Response::default();
+        self.inverse_masses[id] = InverseMass::default();
         self.velocities[id] = Twist::ZERO;
         self.displacements[id] = Twist::ZERO;
     }
@@ -295,7 +295,7 @@ impl Bodies {
     /// Wakes one body; [`Contacts`](crate::rigid::contact::Contacts) wakes whole islands.
     pub(crate) fn wake(&mut self, id: usize) {
         self.asleep[id] = false;
-        self.responses[id] = self.awake_responses[id];
+        self.inverse_masses[id] = self.awake_responses[id];
     }
 
     /// Sets the velocity of a body. A dynamic one that sleeps is woken with its island at the next substep; a

@@ -7,7 +7,7 @@ mod specification;
 mod wall;
 
 pub use crate::scene::BodyKind;
-pub use body_set::{Bodies, Response};
+pub use body_set::{Bodies, InverseMass};
 pub use motion::{Motion, Repeat, Waypoint};
 pub use specification::{BodySpec, CollisionFilter, Elasticity, MassSpec, Rotation, Surface};
 pub use wall::{Boundary, Wall};

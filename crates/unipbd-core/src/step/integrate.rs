@@ -300,7 +300,7 @@ pub(super) fn wrap(particles: &mut Particles, periodic: Periodic, parallelism: P
 }
 
 /// A substep of settling starts: without the velocities of the particles, but what the last projections pushed on
-/// has gone on ([`go_on`]). It stays in the column of displacements until [`take_carried`].
+/// has gone on ([`carry_momentum`]). It stays in the column of displacements until [`take_carried`].
 pub(super) fn hold(particles: &mut Particles, parallelism: Parallelism) {
     particles.start.copy_from_slice(&particles.position);
     for (row, phase) in particles.phase.iter().enumerate() {
@@ -315,14 +315,14 @@ pub(super) fn hold(particles: &mut Particles, parallelism: Parallelism) {
 /// How far each row went on; from here on displacements are what is projected.
 pub(super) fn take_carried(particles: &mut Particles) -> Vec<Vector> {
     let carried = particles.displacement.clone();
-    stand(particles);
+    zero_displacements(particles);
     carried
 }
 
 /// After a substep of settling: a part of its way will go on in the next one, while it is pushed the way it goes. A
 /// push through a deep liquid then takes as many substeps as it has layers, not as their square. Returns the
 /// longest way [m].
-pub(super) fn go_on(particles: &mut Particles, carried: &[Vector]) -> f64 {
+pub(super) fn carry_momentum(particles: &mut Particles, carried: &[Vector]) -> f64 {
     let mut farthest: Real = 0.0;
     for ((displacement, phase), carried) in particles.displacement.iter_mut().zip(&particles.phase).zip(carried) {
         if *phase != Phase::Smoke {
@@ -336,7 +336,7 @@ pub(super) fn go_on(particles: &mut Particles, carried: &[Vector]) -> f64 {
 }
 
 /// Nothing is displaced, and nothing goes on.
-pub(super) fn stand(particles: &mut Particles) {
+pub(super) fn zero_displacements(particles: &mut Particles) {
     for (displacement, phase) in particles.displacement.iter_mut().zip(&particles.phase) {
         if *phase != Phase::Smoke {
             *displacement = Vector::ZERO;

@@ -97,7 +97,7 @@ impl World {
             plan.settle(&mut parts.particles);
             self.rows_rearranged();
             if let Some(rigid) = &mut self.parts.rigid {
-                rigid.lay_down(&self.parts.particles, &self.rows);
+                rigid.put_to_sleep(&self.parts.particles, &self.rows);
             }
         }
         self.parts.sleep = Some(sleep);

@@ -112,7 +112,7 @@ impl World {
 
     pub(super) fn find_neighbors(&mut self) {
         let parts = &mut self.parts;
-        let prepared = parts.neighbors.prepare(&mut parts.particles, parts.cover, parts.parallelism);
+        let prepared = parts.neighbors.prepare(&mut parts.particles, parts.search_positions, parts.parallelism);
         if prepared == Prepared::Rebuilt {
             self.index_rows();
         }
@@ -128,14 +128,14 @@ impl World {
     fn project(&mut self) {
         if self.parts.groups.is_empty() {
             self.reset_corrections();
-            self.take_up_corrections();
+            self.apply_corrections();
         }
         let mut groups = std::mem::take(&mut self.parts.groups);
         for _ in 0..self.parts.iterations {
             for group in &mut groups {
                 self.reset_corrections();
                 group.project(World::now(&self.parts, &self.rows, &self.clock), &mut self.corrections);
-                self.take_up_corrections();
+                self.apply_corrections();
             }
             self.iterated += 1;
             // A violation is that of the positions the iteration started from.
@@ -160,7 +160,7 @@ impl World {
         self.corrections.reset(particles.len(), particles.listed_bands(), samples, walls);
     }
 
-    fn take_up_corrections(&mut self) {
+    fn apply_corrections(&mut self) {
         if self.parts.coarse.is_some() {
             self.corrections.note_moved();
         }
@@ -171,7 +171,7 @@ impl World {
         if let Some(rigid) = &mut parts.rigid {
             rigid.take_loads(self.corrections.loads(), &parts.particles, &self.rows, self.clock.dt);
             if self.stages.contains(&Stage::FindNeighbors) {
-                rigid.expel(&mut parts.particles, &parts.neighbors, &parts.walls, &self.rows, self.clock.dt);
+                rigid.push_out(&mut parts.particles, &parts.neighbors, &parts.walls, &self.rows, self.clock.dt);
             }
         }
     }
@@ -243,23 +243,23 @@ impl World {
             self.changes.reset(self.parts.particles.listed(), temperatures);
             effect.apply(World::now(&self.parts, &self.rows, &self.clock), &mut self.changes);
             self.take_up_changes();
-            self.note_cut(effect.name(), effect.granted());
+            self.note_cut(effect.name(), effect.stable_fraction());
         }
         self.parts.effects = effects;
     }
 
     /// Warns where an effect is cut to what is stable, once until it no longer is.
-    fn note_cut(&mut self, effect: &'static str, granted: f64) {
+    fn note_cut(&mut self, effect: &'static str, stable_fraction: f64) {
         let known = self.cut.iter().position(|name| *name == effect);
         match known {
-            Some(index) if granted >= 1.0 => drop(self.cut.remove(index)),
-            None if granted < 1.0 => {
+            Some(index) if stable_fraction >= 1.0 => drop(self.cut.remove(index)),
+            None if stable_fraction < 1.0 => {
                 self.cut.push(effect);
-                self.warn_of_cut(effect, granted);
+                self.warn_of_cut(effect, stable_fraction);
             }
             _ => (),
         }
-        let wanted = (f64::from(self.clock.substeps) / granted).ceil().min(f64::from(u32::MAX)) as u32;
+        let wanted = (f64::from(self.clock.substeps) / stable_fraction).ceil().min(f64::from(u32::MAX)) as u32;
         self.choice.wanted = self.choice.wanted.max(wanted);
     }
 
@@ -283,8 +283,11 @@ impl World {
     /// Makes the list hold for the positions as they are now.
     fn refresh_neighbors(&mut self) {
         let parts = &mut self.parts;
-        let prepared =
-            parts.neighbors.prepare(&mut parts.particles, crate::neighbors::Cover::Predicted, parts.parallelism);
+        let prepared = parts.neighbors.prepare(
+            &mut parts.particles,
+            crate::neighbors::SearchPositions::Predicted,
+            parts.parallelism,
+        );
         if prepared == Prepared::Rebuilt {
             self.index_rows();
         }
@@ -302,7 +305,7 @@ impl World {
     }
 
     /// One projection without forces, and how far it moved any particle [m]. A part of it goes on in the next one.
-    pub(super) fn hold_still(&mut self) -> f64 {
+    pub(super) fn relax_once(&mut self) -> f64 {
         integrate::hold(&mut self.parts.particles, self.parts.parallelism);
         if self.stages.contains(&Stage::FindNeighbors) {
             self.find_neighbors();
@@ -311,7 +314,7 @@ impl World {
         self.begin_groups();
         self.project();
         integrate::carry_remainders(&mut self.parts.particles, self.parts.parallelism);
-        let farthest = integrate::go_on(&mut self.parts.particles, &carried);
+        let farthest = integrate::carry_momentum(&mut self.parts.particles, &carried);
         integrate::wrap(&mut self.parts.particles, self.parts.neighbors.periodic(), self.parts.parallelism);
         farthest
     }

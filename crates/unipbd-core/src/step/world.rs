@@ -12,7 +12,7 @@ use crate::constraints::{ConstraintGroup, Corrections, Needs, Substep};
 use crate::coupling::RigidBodies;
 use crate::effects::{Changes, Effect, SmokeAdvection};
 use crate::math::{Real, Vector, Vector64};
-use crate::neighbors::{Cover, Neighbors, SavedList};
+use crate::neighbors::{Neighbors, SavedList, SearchPositions};
 use crate::observe::{Event, Material};
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
@@ -38,7 +38,7 @@ pub(crate) struct Parts {
     pub forces: Vec<BodyForce>,
     pub walls: Walls,
     pub neighbors: Neighbors,
-    pub cover: Cover,
+    pub search_positions: SearchPositions,
     pub coarse: Option<CoarseProjection>,
     pub groups: Vec<Box<dyn ConstraintGroup>>,
     pub effects: Vec<Box<dyn Effect>>,
@@ -307,8 +307,8 @@ impl World {
         if self.parts.particles.dense() > 0 {
             // Once nothing moves any more, nothing will.
             let still = SETTLED * self.parts.spacing;
-            (0..substeps).find(|_| self.hold_still() <= still);
-            integrate::stand(&mut self.parts.particles);
+            (0..substeps).find(|_| self.relax_once() <= still);
+            integrate::zero_displacements(&mut self.parts.particles);
         }
         // The start can be observed like any other moment.
         if self.stages.contains(&Stage::FindNeighbors) {

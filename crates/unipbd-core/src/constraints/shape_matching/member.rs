@@ -87,7 +87,7 @@ impl Member {
     }
 
     /// Moves the samples towards the fit, as far as the stiffness goes in a substep of this length [s].
-    pub(super) fn draw_back(&self, places: &mut [Vector64], dt: f64) {
+    pub(super) fn pull_to_shape(&self, places: &mut [Vector64], dt: f64) {
         let part = self.part(dt);
         let Fit { center, rotation } = self.fit(places);
         for (place, r) in places.iter_mut().zip(&self.rest) {

@@ -62,7 +62,7 @@ impl ShapeMatching {
     }
 
     /// Moves the samples of soft and stiff bodies towards their shapes.
-    fn draw_back(&mut self, now: Substep<'_>) {
+    fn pull_to_shape(&mut self, now: Substep<'_>) {
         for k in (0..self.members.len()).filter(|&k| self.members[k].is_matched()) {
             let starts = |row: u32| wide(now.particles.starts()[row as usize]);
             let spin = |places: &[Vector64], rows: &[u32]| -> f64 {
@@ -71,7 +71,7 @@ impl ShapeMatching {
             };
             let before = spin(&self.places[k], &self.rows[k]);
             let member = &self.members[k];
-            member.draw_back(&mut self.places[k], f64::from(now.dt));
+            member.pull_to_shape(&mut self.places[k], f64::from(now.dt));
             self.taken[k] += (before - spin(&self.places[k], &self.rows[k])) / member.inverse_mass;
         }
     }
@@ -100,7 +100,7 @@ impl ConstraintGroup for ShapeMatching {
         self.find_touches(now);
         for _ in 0..ROUNDS {
             self.part(now, out);
-            self.draw_back(now);
+            self.pull_to_shape(now);
         }
         for (k, member) in self.members.iter().enumerate().filter(|(_, member)| member.is_matched()) {
             for (&row, place) in self.rows[k].iter().zip(&self.places[k]) {

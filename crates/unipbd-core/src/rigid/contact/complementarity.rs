@@ -1,6 +1,6 @@
 //! The smallest contact problem, solved exactly: one body pair that touches at one or two points.
 
-/// Response of two points to impulses at them: a symmetric matrix, `off` beside the diagonal.
+/// InverseMass of two points to impulses at them: a symmetric matrix, `off` beside the diagonal.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Coupling {
     pub first: f64,

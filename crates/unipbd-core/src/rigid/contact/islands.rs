@@ -111,9 +111,15 @@ impl Islands {
     }
 
     /// Puts bodies to sleep at once: the fluid that carries them does.
-    pub fn lay_down(&mut self, bodies: &mut Bodies, tired: &[u32], contacts: &[Contact], joints: &[Linked]) {
+    pub fn put_to_sleep(
+        &mut self,
+        bodies: &mut Bodies,
+        falling_asleep: &[u32],
+        contacts: &[Contact],
+        joints: &[Linked],
+    ) {
         self.unite_touching(bodies, contacts, joints);
-        for &body in tired {
+        for &body in falling_asleep {
             bodies.fall_asleep(body as usize);
             self.island[body as usize] = self.touching.root(body);
         }

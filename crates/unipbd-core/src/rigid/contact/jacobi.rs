@@ -1,29 +1,12 @@
 //! A Jacobi sweep over contacts: each computes its push from the same state into its own slot, then
 //! each body gathers its pushes in the order of the contacts. The same bits on any number of threads.
 
-use super::manifold::{Contact, Site};
+use super::contact_cache::ContactCache;
+use super::manifold::Contact;
 use super::pieces::NONE;
-use crate::math::Vector64;
-use crate::rigid::{Response, Twist};
+use super::push::Push;
+use crate::rigid::{InverseMass, Twist};
 use rayon::prelude::*;
-
-/// Equal and opposite pushes on two bodies.
-#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
-pub(super) struct Push {
-    pub linear: Vector64,
-    pub angular_a: f64,
-    pub angular_b: f64,
-}
-
-impl Push {
-    fn on_a(&self) -> Twist {
-        Twist { linear: self.linear, angular: self.angular_a }
-    }
-
-    fn on_b(&self) -> Twist {
-        Twist { linear: self.linear, angular: self.angular_b }
-    }
-}
 
 /// Below this many contacts a sweep is faster on one thread.
 const PARALLEL_FROM: usize = 6000;
@@ -68,15 +51,15 @@ impl Jacobi {
     /// Evaluates `rule` for every contact from one state, then sums the pushes by body.
     pub fn sweep(
         &mut self,
-        (contacts, sites): (&mut [Contact], &mut [Site]),
+        (contacts, caches): (&mut [Contact], &mut [ContactCache]),
         bodies: usize,
-        rule: impl Fn(&mut Contact, &mut Site) -> Push + Sync,
+        rule: impl Fn(&mut Contact, &mut ContactCache) -> Push + Sync,
     ) {
         self.sums.clear();
         self.sums.resize(bodies, Twist::ZERO);
         if !is_parallel(contacts) {
-            for (contact, site) in contacts.iter_mut().zip(sites) {
-                let push = rule(contact, site);
+            for (contact, cache) in contacts.iter_mut().zip(caches) {
+                let push = rule(contact, cache);
                 self.sums[contact.a as usize] += push.on_a();
                 if contact.b != NONE {
                     self.sums[contact.b as usize] -= push.on_b();
@@ -85,10 +68,10 @@ impl Jacobi {
             return;
         }
         self.pushes.resize(contacts.len(), Push::default());
-        let rows = contacts.par_chunks_mut(CHUNK).zip(sites.par_chunks_mut(CHUNK));
-        rows.zip(self.pushes.par_chunks_mut(CHUNK)).for_each(|((contacts, sites), pushes)| {
-            for ((contact, site), push) in contacts.iter_mut().zip(sites).zip(pushes) {
-                *push = rule(contact, site);
+        let rows = contacts.par_chunks_mut(CHUNK).zip(caches.par_chunks_mut(CHUNK));
+        rows.zip(self.pushes.par_chunks_mut(CHUNK)).for_each(|((contacts, caches), pushes)| {
+            for ((contact, cache), push) in contacts.iter_mut().zip(caches).zip(pushes) {
+                *push = rule(contact, cache);
             }
         });
         self.gather();
@@ -109,8 +92,8 @@ impl Jacobi {
     }
 
     /// Adds the motion that the summed pushes cause.
-    pub fn apply(&self, responses: &[Response], motion: &mut [Twist]) {
-        for ((motion, push), response) in motion.iter_mut().zip(&self.sums).zip(responses) {
+    pub fn apply(&self, inverse_masses: &[InverseMass], motion: &mut [Twist]) {
+        for ((motion, push), response) in motion.iter_mut().zip(&self.sums).zip(inverse_masses) {
             motion.linear += push.linear * response.linear;
             motion.angular += push.angular * response.angular;
         }

@@ -8,7 +8,7 @@
 use super::manifold::entry;
 use super::pieces::NONE;
 use crate::math::Vector64;
-use crate::rigid::{Bodies, Pose, Response, Twist};
+use crate::rigid::{Bodies, InverseMass, Pose, Twist};
 
 /// What a joint keeps.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -75,7 +75,7 @@ pub(super) struct Linked {
     middle: (Vector64, Vector64),
     /// Anchor of the first body seen from that of the second, at the start of the substep [m].
     offset: Vector64,
-    split: (Response, Response),
+    split: (InverseMass, InverseMass),
     dt: f64,
 }
 
@@ -104,7 +104,7 @@ impl Linked {
     }
 
     /// Prepares a substep and returns the pushes of the impulses kept from the last one.
-    pub fn prepare(&mut self, bodies: &Bodies, split: &[Response], dt: f64, scale: f64) -> (Twist, Twist) {
+    pub fn prepare(&mut self, bodies: &Bodies, split: &[InverseMass], dt: f64, scale: f64) -> (Twist, Twist) {
         self.place(bodies, &bodies.displacements);
         let (a, b) = self.bodies();
         (self.split, self.dt) = ((entry(split, a), entry(split, b)), dt);

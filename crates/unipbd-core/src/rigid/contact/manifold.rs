@@ -3,20 +3,20 @@
 //! Impulses are in units of mass times displacement, force times dt^2 [kg m]. Solving the points of a
 //! pair at once, and splitting masses among pairs and not points, makes a sweep exact for a box on a
 //! floor and halves the split inside a stack. What every sweep reads is in [`Contact`], what is read
-//! once or seldom in [`Site`]: sweeps over large heaps are bound by memory.
+//! once or seldom in [`ContactCache`]: sweeps over large heaps are bound by memory.
 
 use super::Depenetration;
+use super::collide::Touch;
 use super::complementarity::{self, Coupling};
-use super::jacobi::Push;
-use super::narrow_phase::Touch;
-pub(super) use super::site::{Point, Site};
+use super::contact_cache::{ContactCache, Point};
+use super::push::Push;
 use crate::math::Vector64;
-use crate::rigid::{Response, Surface, Twist};
+use crate::rigid::{InverseMass, Surface, Twist};
 
 /// What stays the same within a substep.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
-struct Gains {
-    /// Response of the split masses along the normal [1/kg].
+struct EffectiveMass {
+    /// InverseMass of the split masses along the normal [1/kg].
     normal: Coupling,
     /// Tangential response of each point to itself [1/kg].
     tangent: [f64; 2],
@@ -36,10 +36,10 @@ pub(super) struct Contact {
     /// Unit normal, towards the first body.
     pub normal: Vector64,
     points: [Point; 2],
-    gains: Gains,
+    effective_mass: EffectiveMass,
     /// Rolling friction times the radius that rolls [m].
     rolling_arm: f64,
-    /// Moment against rolling [kg m^2].
+    /// StepContext against rolling [kg m^2].
     pub rolling_impulse: f64,
 }
 
@@ -66,8 +66,8 @@ impl Pressed {
 
 impl Contact {
     pub fn new((a, b): (u32, u32), normal: Vector64, rolling_arm: f64) -> Contact {
-        let (points, gains) = ([Point::default(); 2], Gains::default());
-        Contact { a, b, count: 0, normal, points, gains, rolling_arm, rolling_impulse: 0.0 }
+        let (points, effective_mass) = ([Point::default(); 2], EffectiveMass::default());
+        Contact { a, b, count: 0, normal, points, effective_mass, rolling_arm, rolling_impulse: 0.0 }
     }
 
     /// Whether one more point with this normal can be added.
@@ -135,19 +135,19 @@ impl Contact {
     }
 
     /// Notes the velocities at the start of a substep. What slides slower than `slow` [m/s] sticks.
-    pub fn note_velocities(&mut self, site: &mut Site, velocities: &[Twist], slow: f64) {
+    pub fn note_velocities(&mut self, cache: &mut ContactCache, velocities: &[Twist], slow: f64) {
         let (a, b) = (entry(velocities, self.a), entry(velocities, self.b));
         let mut sliding = 0.0f64;
         for (k, point) in self.points().iter().enumerate() {
-            site.approach[k] = self.opening(point, &a, &b);
+            cache.approach[k] = self.opening(point, &a, &b);
             sliding = sliding.max(self.slide(point, &a, &b).abs());
         }
-        let surface = &site.surface;
-        self.gains.friction = if sliding < slow { surface.static_friction } else { surface.kinetic_friction };
+        let surface = &cache.surface;
+        self.effective_mass.friction = if sliding < slow { surface.static_friction } else { surface.kinetic_friction };
     }
 
-    /// Prepares the equations; `split` are the responses times the share of contacts in each body.
-    pub fn prepare(&mut self, split: &[Response]) {
+    /// Prepares the equations; `split` are the inverse_masses times the share of contacts in each body.
+    pub fn prepare(&mut self, split: &[InverseMass]) {
         let (a, b) = (entry(split, self.a), entry(split, self.b));
         let linear = a.linear + b.linear;
         let turning = |pa: f64, qa: f64, pb: f64, qb: f64| pa * qa * a.angular + pb * qb * b.angular;
@@ -159,7 +159,8 @@ impl Contact {
         if self.count == 2 {
             (normal.second, normal.off, tangent[1]) = (along_normal(q, q), along_normal(p, q), along_tangent(q));
         }
-        self.gains = Gains { normal, tangent, turning: (a.angular, b.angular), friction: self.gains.friction };
+        self.effective_mass =
+            EffectiveMass { normal, tangent, turning: (a.angular, b.angular), friction: self.effective_mass.friction };
     }
 
     /// The push of the impulses kept from the last substep.
@@ -193,7 +194,7 @@ impl Contact {
         let mut push = Push::default();
         for (k, old) in old.into_iter().enumerate().take(self.count as usize) {
             let (point, normal) = (self.points[k], pressed.normal[k]);
-            let limit = self.gains.friction * normal;
+            let limit = self.effective_mass.friction * normal;
             let tangent = (point.tangent_impulse - self.stop(k, &pressed)).clamp(-limit, limit);
             self.add_push(&mut push, &point, normal - old, tangent - point.tangent_impulse);
             (self.points[k].normal_impulse, self.points[k].tangent_impulse) = (normal, tangent);
@@ -234,9 +235,9 @@ impl Contact {
         if old == [0.0; 2] && excess[0] >= 0.0 && excess[1] >= 0.0 && self.rolling_impulse == 0.0 {
             return None;
         }
-        let normal = complementarity::solve(&self.gains.normal, excess, old, [0.0; 2]);
+        let normal = complementarity::solve(&self.effective_mass.normal, excess, old, [0.0; 2]);
         let (p, q, change) = (&self.points[0], &self.points[1], [normal[0] - old[0], normal[1] - old[1]]);
-        let (turns_a, turns_b) = self.gains.turning;
+        let (turns_a, turns_b) = self.effective_mass.turning;
         let turned_a = turns_a * (p.normal_a * change[0] + q.normal_a * change[1]);
         let turned_b = turns_b * (p.normal_b * change[0] + q.normal_b * change[1]);
         Some(Pressed { a, b, normal, turned: (turned_a, turned_b) })
@@ -251,13 +252,13 @@ impl Contact {
         let turned = point.tangent_a * pressed.turned.0 + point.tangent_b * pressed.turned.1;
         // Points of one line slide alike: each answers for its share of the load.
         let share = pressed.normal[k] / total;
-        (self.slide(point, &pressed.a, &pressed.b) + turned) * share / self.gains.tangent[k]
+        (self.slide(point, &pressed.a, &pressed.b) + turned) * share / self.effective_mass.tangent[k]
     }
 
     /// Rolling resistance, after the other impulses of the contact have turned the bodies.
     fn resist_rolling(&mut self, pressed: &Pressed, push: &mut Push) {
         let limit = self.rolling_arm * pressed.total();
-        let (a, b) = self.gains.turning;
+        let (a, b) = self.effective_mass.turning;
         let turn = pressed.a.angular - pressed.b.angular + push.angular_a * a + push.angular_b * b;
         let moment = (self.rolling_impulse - turn / (a + b)).clamp(-limit, limit);
         push.angular_a += moment - self.rolling_impulse;
@@ -265,30 +266,30 @@ impl Contact {
         self.rolling_impulse = moment;
     }
 
-    fn point_rebounds(&self, k: usize, site: &Site, slowest: f64) -> bool {
-        self.points[k].normal_impulse > 0.0 && site.approach[k] < -slowest
+    fn point_rebounds(&self, k: usize, cache: &ContactCache, slowest: f64) -> bool {
+        self.points[k].normal_impulse > 0.0 && cache.approach[k] < -slowest
     }
 
     /// Whether the contact rebounds: it was hit faster than `slowest` [m/s].
-    pub fn rebounds(&self, site: &Site, slowest: f64) -> bool {
-        site.surface.restitution > 0.0 && (0..2).any(|k| self.point_rebounds(k, site, slowest))
+    pub fn rebounds(&self, cache: &ContactCache, slowest: f64) -> bool {
+        cache.surface.restitution > 0.0 && (0..2).any(|k| self.point_rebounds(k, cache, slowest))
     }
 
     /// One velocity iteration towards v_n = -e v_before; the whole impulse of the substep stays repulsive.
-    pub fn rebound(&self, site: &mut Site, velocities: &[Twist], dt: f64, slowest: f64) -> Push {
+    pub fn rebound(&self, cache: &mut ContactCache, velocities: &[Twist], dt: f64, slowest: f64) -> Push {
         let (a, b) = (entry(velocities, self.a), entry(velocities, self.b));
-        let acts = [0, 1].map(|k| self.point_rebounds(k, site, slowest));
+        let acts = [0, 1].map(|k| self.point_rebounds(k, cache, slowest));
         let excess =
-            [0, 1].map(|k| self.opening(&self.points[k], &a, &b) + site.surface.restitution * site.approach[k]);
-        let Coupling { first, second, off } = self.gains.normal;
+            [0, 1].map(|k| self.opening(&self.points[k], &a, &b) + cache.surface.restitution * cache.approach[k]);
+        let Coupling { first, second, off } = self.effective_mass.normal;
         let keep = |acts: bool, gain: f64| if acts { gain } else { 0.0 };
         let coupling = Coupling { first: keep(acts[0], first), second: keep(acts[1], second), off };
-        let (old, lower) = (site.rebound, self.points.map(|point| -point.normal_impulse / dt));
+        let (old, lower) = (cache.rebound, self.points.map(|point| -point.normal_impulse / dt));
         let total = complementarity::solve(&coupling, excess, old, lower);
         let mut push = Push::default();
         for (k, point) in self.points().iter().enumerate() {
             self.add_push(&mut push, point, total[k] - old[k], 0.0);
-            site.rebound[k] = total[k];
+            cache.rebound[k] = total[k];
         }
         push
     }
@@ -307,7 +308,7 @@ impl Contact {
             let deep = (overlap - how.deep * size).max(0.0);
             -(how.fraction * overlap + (how.deep_fraction - how.fraction) * deep).clamp(0.0, how.speed * dt)
         });
-        let normal = complementarity::solve(&self.gains.normal, lacking, [0.0; 2], [0.0; 2]);
+        let normal = complementarity::solve(&self.effective_mass.normal, lacking, [0.0; 2], [0.0; 2]);
         let mut push = Push::default();
         for (point, normal) in self.points().iter().zip(normal) {
             self.add_push(&mut push, point, normal, 0.0);

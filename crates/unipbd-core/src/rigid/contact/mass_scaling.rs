@@ -6,18 +6,18 @@
 use super::manifold::{Contact, entry};
 use super::union_find::UnionFind;
 use crate::math::Vector64;
-use crate::rigid::{Bodies, Response};
+use crate::rigid::{Bodies, InverseMass};
 
 /// Masses are scaled by no more than this, or impulses would drown in rounding.
 const LARGEST: f64 = 1e6;
 
-/// Writes the responses that contacts see, exp(k h) times those of the bodies.
-pub(super) fn scale(contacts: &[Contact], bodies: &Bodies, up: Vector64, k: f64, out: &mut Vec<Response>) {
+/// Writes the inverse_masses that contacts see, exp(k h) times those of the bodies.
+pub(super) fn scale(contacts: &[Contact], bodies: &Bodies, up: Vector64, k: f64, out: &mut Vec<InverseMass>) {
     let heap = heaps(contacts, bodies);
     let mut support = vec![f64::INFINITY; bodies.len()];
     for contact in contacts {
         let (a, b) = (contact.a as usize, contact.b as usize);
-        let fixed = |id: usize| entry(&bodies.responses, id as u32) == Response::default();
+        let fixed = |id: usize| entry(&bodies.inverse_masses, id as u32) == InverseMass::default();
         let resting = if fixed(b) {
             a
         } else if fixed(a) {
@@ -35,11 +35,11 @@ pub(super) fn scale(contacts: &[Contact], bodies: &Bodies, up: Vector64, k: f64,
         lowest[heap[id]] = lowest[heap[id]].min(pose.position.dot(up));
     }
     out.clear();
-    out.extend(bodies.responses.iter().enumerate().map(|(id, response)| {
+    out.extend(bodies.inverse_masses.iter().enumerate().map(|(id, response)| {
         let base = if support[heap[id]].is_finite() { support[heap[id]] } else { lowest[heap[id]] };
         let height = (bodies.poses[id].position.dot(up) - base).max(0.0);
         let factor = (k * height).exp().min(LARGEST);
-        Response { linear: response.linear * factor, angular: response.angular * factor }
+        InverseMass { linear: response.linear * factor, angular: response.angular * factor }
     }));
 }
 
@@ -47,7 +47,7 @@ pub(super) fn scale(contacts: &[Contact], bodies: &Bodies, up: Vector64, k: f64,
 fn heaps(contacts: &[Contact], bodies: &Bodies) -> Vec<usize> {
     let mut touching = UnionFind::default();
     touching.reset(bodies.len());
-    let movable = |id: u32| entry(&bodies.responses, id) != Response::default();
+    let movable = |id: u32| entry(&bodies.inverse_masses, id) != InverseMass::default();
     for contact in contacts.iter().filter(|contact| movable(contact.a) && movable(contact.b)) {
         touching.unite(contact.a, contact.b);
     }

@@ -14,19 +14,21 @@
 //! a frame ends with [`Contacts::finish_frame`] and [`Bodies::finish_frame`].
 
 mod broad;
+mod collide;
 mod complementarity;
-mod find;
+mod contact_cache;
+mod contact_set;
 mod islands;
 mod jacobi;
 mod joint;
 mod manifold;
 mod mass_scaling;
 mod narrow_phase;
+mod pair_contacts;
 mod pairs;
 mod pieces;
-mod search;
+mod push;
 mod settings;
-mod site;
 mod union_find;
 
 pub use crate::scene::ContactMethod;
@@ -36,25 +38,27 @@ pub use settings::{ContactSettings, Depenetration};
 
 use crate::math::Vector64;
 use crate::rigid::Wall;
-use crate::rigid::{Bodies, Response, Twist};
-use find::{Finder, Moment};
+use crate::rigid::{Bodies, InverseMass, Twist};
+use contact_cache::ContactCache;
+use contact_set::StepContext;
 use islands::Islands;
 use jacobi::Jacobi;
 use joint::Linked;
-use manifold::{Contact, Site, entry};
+use manifold::{Contact, entry};
+use narrow_phase::NarrowPhase;
 use pieces::NONE;
 
 /// The contacts and joints of all bodies: solver state that lasts from substep to substep.
 #[derive(Clone, serde::Serialize, serde::Deserialize)]
 pub struct Contacts {
     settings: ContactSettings,
-    finder: Finder,
+    narrow_phase: NarrowPhase,
     joints: Vec<Linked>,
     islands: Islands,
     jacobi: Jacobi,
-    split: Vec<Response>,
+    split: Vec<InverseMass>,
     /// Responses as contacts see them; empty without mass scaling: then they are those of the bodies.
-    scaled: Vec<Response>,
+    scaled: Vec<InverseMass>,
     counts: Vec<u32>,
     corrections: Vec<Twist>,
     wall_impulses: Vec<Vector64>,
@@ -89,7 +93,7 @@ impl Contacts {
     pub fn new(walls: &[Wall], settings: ContactSettings) -> Contacts {
         Contacts {
             settings,
-            finder: Finder::new(walls),
+            narrow_phase: NarrowPhase::new(walls),
             joints: Vec::new(),
             islands: Islands::default(),
             jacobi: Jacobi::default(),
@@ -110,7 +114,7 @@ impl Contacts {
     pub fn add_joint(&mut self, joint: Joint) -> usize {
         self.joints.push(Linked::new(joint));
         if let Some(other) = joint.other {
-            self.finder.exclude(joint.body, other);
+            self.narrow_phase.exclude(joint.body, other);
         }
         self.joints.len() - 1
     }
@@ -131,22 +135,22 @@ impl Contacts {
         self.islands.resize(bodies.len());
         self.islands.wake_pushed(bodies);
         let kept = if self.settings.method == ContactMethod::Split { self.warm_factor } else { 0.0 };
-        let moment = Moment { dt, gravity: self.gravity, kept, slow: 2.0 * self.gravity * dt };
+        let moment = StepContext { dt, gravity: self.gravity, kept, slow: 2.0 * self.gravity * dt };
         loop {
-            self.finder.find(bodies, &moment);
-            if !self.islands.wake_touched(bodies, self.finder.candidates(), &self.joints, dt) {
+            self.narrow_phase.find(bodies, &moment);
+            if !self.islands.wake_touched(bodies, self.narrow_phase.candidates(), &self.joints, dt) {
                 break;
             }
         }
-        self.finder.adopt();
+        self.narrow_phase.adopt();
     }
 
     /// Shares each body among its contacts and applies the impulses kept from the last substep.
     pub fn warm_start(&mut self, bodies: &mut Bodies) {
         self.split_masses(bodies);
-        self.jacobi.index(self.finder.contacts(), bodies.len());
+        self.jacobi.index(self.narrow_phase.contacts(), bodies.len());
         let split = &self.split;
-        self.jacobi.sweep(self.finder.rows(), bodies.len(), |contact, _| {
+        self.jacobi.sweep(self.narrow_phase.rows(), bodies.len(), |contact, _| {
             contact.prepare(split);
             contact.kept_push()
         });
@@ -167,7 +171,7 @@ impl Contacts {
                 self.counts[body as usize] += 1;
             }
         };
-        for contact in self.finder.contacts() {
+        for contact in self.narrow_phase.contacts() {
             let near = 1e-3 * bodies.sizes[contact.a as usize];
             if contact.is_pressed() || contact.gap_after(&bodies.displacements, 1.0) < near {
                 count(contact.a);
@@ -180,13 +184,21 @@ impl Contacts {
         }
         let relaxation = self.settings.relaxation;
         if self.settings.mass_scaling > 0.0 {
-            mass_scaling::scale(self.finder.contacts(), bodies, self.up, self.settings.mass_scaling, &mut self.scaled);
+            mass_scaling::scale(
+                self.narrow_phase.contacts(),
+                bodies,
+                self.up,
+                self.settings.mass_scaling,
+                &mut self.scaled,
+            );
         }
         self.split.clear();
-        self.split.extend(seen(&self.scaled, &bodies.responses).iter().zip(&self.counts).map(|(response, &count)| {
-            let shares = (f64::from(count) / relaxation).max(1.0);
-            Response { linear: response.linear * shares, angular: response.angular * shares }
-        }));
+        self.split.extend(seen(&self.scaled, &bodies.inverse_masses).iter().zip(&self.counts).map(
+            |(response, &count)| {
+                let shares = (f64::from(count) / relaxation).max(1.0);
+                InverseMass { linear: response.linear * shares, angular: response.angular * shares }
+            },
+        ));
     }
 
     /// Jacobi iterations of all contacts and joints on the displacements, one unless the settings say more.
@@ -198,12 +210,12 @@ impl Contacts {
 
     fn sweep(&mut self, bodies: &mut Bodies) {
         let displacements = &bodies.displacements;
-        let rows = self.finder.rows();
+        let rows = self.narrow_phase.rows();
         match self.settings.method {
             ContactMethod::Split => self.jacobi.sweep(rows, bodies.len(), |contact, _| contact.solve(displacements)),
             ContactMethod::Averaged => self
                 .jacobi
-                .sweep(rows, bodies.len(), |contact, site| contact.solve_positions(&site.surface, displacements)),
+                .sweep(rows, bodies.len(), |contact, cache| contact.solve_positions(&cache.surface, displacements)),
         }
         for linked in self.joints.iter_mut().filter(|linked| is_movable(linked, bodies)) {
             let pushes = linked.solve(&bodies.displacements);
@@ -213,7 +225,7 @@ impl Contacts {
     }
 
     fn apply_displacements(&mut self, bodies: &mut Bodies) {
-        self.jacobi.apply(seen(&self.scaled, &bodies.responses), &mut bodies.displacements);
+        self.jacobi.apply(seen(&self.scaled, &bodies.inverse_masses), &mut bodies.displacements);
         let per_time = 1.0 / self.dt;
         for (load, push) in bodies.contact_loads.iter_mut().zip(&self.jacobi.sums) {
             *load += push.scaled(per_time);
@@ -223,18 +235,18 @@ impl Contacts {
     /// Lets contacts rebound that were hit faster than gravity alone would in two substeps.
     pub fn restitute(&mut self, bodies: &mut Bodies) {
         let (dt, slowest) = (self.dt, 2.0 * self.gravity * self.dt);
-        let mut rows = self.finder.contacts().iter().zip(self.finder.sites());
-        if rows.any(|(contact, site)| contact.rebounds(site, slowest)) {
+        let mut rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches());
+        if rows.any(|(contact, cache)| contact.rebounds(cache, slowest)) {
             for _ in 0..self.settings.restitution_iterations {
                 let velocities = &bodies.velocities;
-                self.jacobi.sweep(self.finder.rows(), bodies.len(), |contact, site| {
-                    if contact.rebounds(site, slowest) {
-                        contact.rebound(site, velocities, dt, slowest)
+                self.jacobi.sweep(self.narrow_phase.rows(), bodies.len(), |contact, cache| {
+                    if contact.rebounds(cache, slowest) {
+                        contact.rebound(cache, velocities, dt, slowest)
                     } else {
                         Default::default()
                     }
                 });
-                self.jacobi.apply(seen(&self.scaled, &bodies.responses), &mut bodies.velocities);
+                self.jacobi.apply(seen(&self.scaled, &bodies.inverse_masses), &mut bodies.velocities);
                 for (load, push) in bodies.contact_loads.iter_mut().zip(&self.jacobi.sums) {
                     *load += *push;
                 }
@@ -245,12 +257,12 @@ impl Contacts {
 
     /// Adds the impulses of the substep to the walls they act on.
     fn load_walls(&mut self) {
-        let rows = self.finder.contacts().iter().zip(self.finder.sites());
-        for (contact, site) in rows.filter(|(_, site)| site.wall != NONE) {
-            for (point, rebound) in contact.points().iter().zip(site.rebound) {
+        let rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches());
+        for (contact, cache) in rows.filter(|(_, cache)| cache.wall != NONE) {
+            for (point, rebound) in contact.points().iter().zip(cache.rebound) {
                 let normal = contact.normal * (point.normal_impulse / self.dt + rebound);
                 let tangent = contact.normal.perp() * (point.tangent_impulse / self.dt);
-                self.wall_impulses[site.wall as usize] -= normal + tangent;
+                self.wall_impulses[cache.wall as usize] -= normal + tangent;
             }
         }
     }
@@ -259,7 +271,7 @@ impl Contacts {
     pub fn depenetrate(&mut self, bodies: &mut Bodies) {
         let (how, dt) = (&self.settings.depenetration, self.dt);
         let (displacements, sizes) = (&bodies.displacements, &bodies.sizes);
-        self.jacobi.sweep(self.finder.rows(), bodies.len(), |contact, _| {
+        self.jacobi.sweep(self.narrow_phase.rows(), bodies.len(), |contact, _| {
             let size = sizes[contact.a as usize];
             let size = if contact.b == NONE { size } else { size.min(sizes[contact.b as usize]) };
             contact.separate(displacements, how, size, dt)
@@ -270,7 +282,7 @@ impl Contacts {
         }
         self.corrections.clear();
         self.corrections.resize(bodies.len(), Twist::ZERO);
-        self.jacobi.apply(seen(&self.scaled, &bodies.responses), &mut self.corrections);
+        self.jacobi.apply(seen(&self.scaled, &bodies.inverse_masses), &mut self.corrections);
         for (pose, moved) in bodies.poses.iter_mut().zip(&self.corrections) {
             pose.position += moved.linear;
             pose.angle += moved.angular;
@@ -284,9 +296,10 @@ impl Contacts {
             *force = std::mem::take(impulse) / frame_time;
         }
         if let Some(settings) = &self.settings.sleep {
-            let fell_asleep = self.islands.sleep(bodies, self.finder.contacts(), &self.joints, settings, frame_time);
+            let fell_asleep =
+                self.islands.sleep(bodies, self.narrow_phase.contacts(), &self.joints, settings, frame_time);
             if fell_asleep {
-                self.finder.freeze(bodies, self.dt);
+                self.narrow_phase.freeze(bodies, self.dt);
             }
         }
     }
@@ -298,11 +311,11 @@ impl Contacts {
     }
 
     /// Puts bodies to sleep, those that touch each other as one island.
-    pub(crate) fn lay_down(&mut self, bodies: &mut Bodies, tired: &[u32]) {
-        if !tired.is_empty() {
+    pub(crate) fn put_to_sleep(&mut self, bodies: &mut Bodies, falling_asleep: &[u32]) {
+        if !falling_asleep.is_empty() {
             self.islands.resize(bodies.len());
-            self.islands.lay_down(bodies, tired, self.finder.contacts(), &self.joints);
-            self.finder.freeze(bodies, self.dt);
+            self.islands.put_to_sleep(bodies, falling_asleep, self.narrow_phase.contacts(), &self.joints);
+            self.narrow_phase.freeze(bodies, self.dt);
         }
     }
 
@@ -314,20 +327,20 @@ impl Contacts {
     /// The contacts of the last substep between bodies that were awake.
     pub fn points(&self) -> impl Iterator<Item = ContactPoint> + '_ {
         let index = |index: u32| (index != NONE).then_some(index);
-        let read = move |contact: &Contact, site: &Site, k: usize| {
+        let read = move |contact: &Contact, cache: &ContactCache, k: usize| {
             let point = &contact.points()[k];
             ContactPoint {
                 body: contact.a,
                 other: index(contact.b),
-                wall: index(site.wall),
+                wall: index(cache.wall),
                 normal: contact.normal,
                 gap: point.gap,
-                normal_force: point.normal_impulse / (self.dt * self.dt) + site.rebound[k] / self.dt,
+                normal_force: point.normal_impulse / (self.dt * self.dt) + cache.rebound[k] / self.dt,
                 friction_force: point.tangent_impulse / (self.dt * self.dt),
             }
         };
-        let rows = self.finder.contacts().iter().zip(self.finder.sites());
-        rows.flat_map(move |(contact, site)| (0..contact.points().len()).map(move |k| read(contact, site, k)))
+        let rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches());
+        rows.flat_map(move |(contact, cache)| (0..contact.points().len()).map(move |k| read(contact, cache, k)))
     }
 
     /// Joints with the force on the first body [N] and the torque of the motor [N m] in the last substep.
@@ -339,7 +352,7 @@ impl Contacts {
 
 fn is_movable(linked: &Linked, bodies: &Bodies) -> bool {
     let (a, b) = linked.bodies();
-    let movable = |id: u32| entry(&bodies.responses, id) != Response::default();
+    let movable = |id: u32| entry(&bodies.inverse_masses, id) != InverseMass::default();
     movable(a) || movable(b)
 }
 
@@ -350,7 +363,7 @@ fn add_pair(sums: &mut [Twist], (a, b): (u32, u32), (on_a, on_b): (Twist, Twist)
     }
 }
 
-/// The responses that contacts see: the scaled ones, where there are any.
-fn seen<'a>(scaled: &'a [Response], own: &'a [Response]) -> &'a [Response] {
+/// The inverse_masses that contacts see: the scaled ones, where there are any.
+fn seen<'a>(scaled: &'a [InverseMass], own: &'a [InverseMass]) -> &'a [InverseMass] {
     if scaled.is_empty() { own } else { scaled }
 }

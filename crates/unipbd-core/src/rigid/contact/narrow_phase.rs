@@ -1,259 +1,128 @@
-//! Narrow phase: where two rounded convex pieces touch, or are about to.
+//! Finds the contacts of each substep and hands on the impulses of the last one.
 //!
-//! Vertices of each piece are tested against the faces of the other, both ways alike, so that
-//! neither piece is preferred and a mirrored pair gives mirrored contacts. Where even the
-//! unrounded cores overlap (deep starts), vertices would pull in all directions: convex solids are then
-//! parted over a single face. In a piece cut from a concave solid that face may be the wrong way out.
+//! What touches (which vertex over which face) is sought anew only where the pieces of a pair have moved: until
+//! then the same features are measured again, which is exact. Discs are always measured.
 
-use super::pieces::{HalfPlane, PieceView, Pieces};
-use crate::math::Vector64;
+use super::contact_cache::ContactCache;
+use super::contact_set::{ContactSet, Rows, StepContext};
+use super::manifold::Contact;
+use super::pair_contacts::PairContacts;
+use super::pairs::{Pairs, Span};
+use super::pieces::Pieces;
+use crate::rigid::Bodies;
+use crate::rigid::Wall;
+use rayon::prelude::*;
 
-/// A place where two pieces touch or soon may.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Touch {
-    /// Unit normal, towards the first piece.
-    pub normal: Vector64,
-    /// Point on the surface of the first piece [m].
-    pub on_a: Vector64,
-    /// Point on the surface of the second piece [m].
-    pub on_b: Vector64,
-    /// Distance of the surfaces along the normal, negative when they overlap [m].
-    pub gap: f64,
-    pub place: Place,
+/// Pairs per task, and how many pairs make tasks worth their while.
+const CHUNK: usize = 512;
+const PARALLEL_FROM: usize = 2048;
+
+/// The contacts of all bodies.
+#[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct NarrowPhase {
+    pieces: Pieces,
+    pairs: Pairs,
+    found: ContactSet,
+    /// What the coming substep finds.
+    coming: ContactSet,
+    /// Contacts between sleeping bodies, kept until they wake: with forces in place of impulses.
+    frozen: ContactSet,
+    /// What each task of the narrow phase found.
+    #[serde(skip)]
+    tasks: Vec<ContactSet>,
 }
 
-/// What touches: names a point for recognising it in the next substep, and for measuring it again there.
-#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
-pub(super) struct Place {
-    /// The vertex that touches, with [`OF_SECOND`] where it is one of the second piece.
-    pub vertex: u32,
-    /// The face of the other piece it lies over, or the vertex it is closest to, with [`VERTEX`].
-    on: u32,
-}
+impl NarrowPhase {
+    pub fn new(walls: &[Wall]) -> NarrowPhase {
+        NarrowPhase { pieces: Pieces::of_walls(walls), ..NarrowPhase::default() }
+    }
 
-/// Marks a vertex of the second piece.
-const OF_SECOND: u32 = 1 << 31;
-/// Marks a vertex in place of a face.
-const VERTEX: u32 = 1 << 31;
+    pub fn contacts(&self) -> &[Contact] {
+        &self.found.contacts
+    }
 
-/// How long what was found stays so.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) enum Finding {
-    /// Farther apart than the margin.
-    Apart,
-    /// The same vertices and faces touch while the pieces hardly move.
-    Near,
-    /// Cores overlap: which way out is to be asked again.
-    Deep,
-}
+    pub fn caches(&self) -> &[ContactCache] {
+        &self.found.caches
+    }
 
-/// Contacts of a piece with a half-plane.
-pub(super) fn against_half_plane(a: &PieceView, plane: &HalfPlane, margin: f64, out: &mut Vec<Touch>) {
-    for (k, &p) in a.vertices.iter().enumerate().filter(|&(k, _)| a.sampled[k]) {
-        let touch = on_half_plane(a, plane, p, k as u32);
-        if touch.gap < margin {
-            out.push(touch);
+    pub fn rows(&mut self) -> Rows<'_> {
+        (&mut self.found.contacts, &mut self.found.caches)
+    }
+
+    /// Two bodies that no longer collide with each other.
+    pub fn exclude(&mut self, a: u32, b: u32) {
+        self.pairs.exclude(a, b);
+    }
+
+    /// Finds all contacts that can act in a substep, with the impulses of the last one. They are
+    /// [`NarrowPhase::candidates`] until they are adopted.
+    pub fn find(&mut self, bodies: &Bodies, moment: &StepContext) {
+        let added = self.pieces.append_bodies(bodies);
+        self.pairs.renumber(&self.pieces, added);
+        self.pieces.update(bodies);
+        self.pairs.update(&self.pieces, bodies, moment.dt, moment.gravity);
+        self.collide(bodies, moment);
+    }
+
+    /// What was found.
+    pub fn candidates(&self) -> &[Contact] {
+        &self.coming.contacts
+    }
+
+    /// Ends the search: what was found are the contacts.
+    pub fn adopt(&mut self) {
+        std::mem::swap(&mut self.found, &mut self.coming);
+        for (pair, sought) in self.found.renewed.drain(..) {
+            self.pairs.sought[pair as usize] = sought;
         }
-    }
-}
-
-fn on_half_plane(a: &PieceView, plane: &HalfPlane, p: Vector64, vertex: u32) -> Touch {
-    let height = (p - plane.point).dot(plane.normal);
-    let (normal, on_a, on_b) = (plane.normal, p - plane.normal * a.radius, p - plane.normal * height);
-    Touch { normal, on_a, on_b, gap: height - a.radius, place: Place { vertex, on: 0 } }
-}
-
-/// Contacts of two pieces with gaps below `margin`.
-pub(super) fn between(a: &PieceView, b: &PieceView, margin: f64, out: &mut Vec<Touch>) -> Finding {
-    let radii = a.radius + b.radius;
-    let mut overlap = false;
-    if !a.is_round() && !b.is_round() {
-        let (Some(of_b), Some(of_a)) = (separation(a, b, radii + margin), separation(b, a, radii + margin)) else {
-            return Finding::Apart;
-        };
-        overlap = of_a.max(of_b) < 0.0;
-    }
-    if overlap && a.is_whole() && b.is_whole() {
-        overlapping_cores(a, b, out);
-        return Finding::Deep;
-    }
-    let over_b = vertices_on_faces(a, b, margin, out, |touch| touch);
-    let over_a = vertices_on_faces(b, a, margin, out, Touch::reversed);
-    closest_vertices(a, b, (over_b, over_a), margin, out);
-    if overlap && out.is_empty() {
-        overlapping_cores(a, b, out);
-    }
-    if overlap { Finding::Deep } else { Finding::Near }
-}
-
-/// Measures a place again that [`between`] found, where the pieces are now.
-pub(super) fn again(a: &PieceView, b: &PieceView, place: Place) -> Touch {
-    if place.vertex & OF_SECOND != 0 {
-        return again(b, a, Place { vertex: place.vertex ^ OF_SECOND, on: place.on }).reversed();
-    }
-    let (p, on) = (a.vertices[place.vertex as usize], (place.on & !VERTEX) as usize);
-    if place.on & VERTEX != 0 {
-        return at_vertices(a, b, p, b.vertices[on], place);
-    }
-    let normal = b.normals[on];
-    over_face(a, b, p, ((p - b.vertices[on]).dot(normal), normal), place)
-}
-
-/// The same against a half-plane.
-pub(super) fn again_on_half_plane(a: &PieceView, plane: &HalfPlane, place: Place) -> Touch {
-    on_half_plane(a, plane, a.vertices[place.vertex as usize], place.vertex)
-}
-
-/// The vertex `p` of `a` at a height over a face of `b` with this normal.
-fn over_face(a: &PieceView, b: &PieceView, p: Vector64, (height, normal): (f64, Vector64), place: Place) -> Touch {
-    let (on_a, on_b) = (p - normal * a.radius, p - normal * (height - b.radius));
-    Touch { normal, on_a, on_b, gap: height - a.radius - b.radius, place }
-}
-
-/// The vertex `p` of `a` and `q` of `b`.
-fn at_vertices(a: &PieceView, b: &PieceView, p: Vector64, q: Vector64, place: Place) -> Touch {
-    let distance = (p - q).length();
-    let normal = if distance > 0.0 { (p - q) / distance } else { Vector64::Y };
-    let (on_a, on_b) = (p - normal * a.radius, q + normal * b.radius);
-    Touch { normal, on_a, on_b, gap: distance - a.radius - b.radius, place }
-}
-
-/// Contact of two discs, if their gap is below `margin`.
-pub(super) fn discs(pieces: &Pieces, (a, b): (u32, u32), margin: f64) -> Option<Touch> {
-    let ((p, radius_a), (q, radius_b)) = (pieces.disc(a), pieces.disc(b));
-    let (distance, radii) = ((p - q).length(), radius_a + radius_b);
-    let normal = if distance > 0.0 { (p - q) / distance } else { Vector64::Y };
-    let (on_a, on_b, place) = (p - normal * radius_a, q + normal * radius_b, Place { vertex: 0, on: VERTEX });
-    (distance < radii + margin).then_some(Touch { normal, on_a, on_b, gap: distance - radii, place })
-}
-
-impl Touch {
-    /// The same contact with the pieces named the other way round.
-    pub fn reversed(self) -> Touch {
-        Touch {
-            normal: -self.normal,
-            on_a: self.on_b,
-            on_b: self.on_a,
-            gap: self.gap,
-            place: Place { vertex: self.place.vertex ^ OF_SECOND, on: self.place.on },
+        for active in &self.pairs.active {
+            self.pairs.spans[active.index as usize] = Span::default();
         }
-    }
-}
-
-/// Largest separation of `a` from the faces of `b`; none as soon as it exceeds `limit`.
-fn separation(a: &PieceView, b: &PieceView, limit: f64) -> Option<f64> {
-    let mut largest = f64::NEG_INFINITY;
-    for (&v, &n) in b.vertices.iter().zip(b.normals) {
-        let distance = lowest(a, v, n);
-        if distance > limit {
-            return None;
-        }
-        largest = largest.max(distance);
-    }
-    Some(largest)
-}
-
-fn lowest(a: &PieceView, point: Vector64, normal: Vector64) -> f64 {
-    a.vertices.iter().map(|&p| (p - point).dot(normal)).fold(f64::INFINITY, f64::min)
-}
-
-/// Adds the vertices of `a` that lie over a face of `b`, and returns which do, near or far, a bit each.
-/// `named` restores the order of the pieces.
-fn vertices_on_faces(
-    a: &PieceView,
-    b: &PieceView,
-    margin: f64,
-    out: &mut Vec<Touch>,
-    named: impl Fn(Touch) -> Touch,
-) -> u64 {
-    let mut over = 0;
-    let radii = a.radius + b.radius;
-    // A rounded vertex may reach a little past the end of a face; a disc ends exactly there.
-    let overhang = if a.is_round() { 0.0 } else { 0.25 * radii };
-    for (k, &p) in a.vertices.iter().enumerate().filter(|&(k, _)| a.sampled[k]) {
-        let Some((face, height)) = face_below(p, b) else { continue };
-        let (from, to, normal) = (b.vertices[face], b.vertices[(face + 1) % b.vertices.len()], b.normals[face]);
-        let tangent = normal.perp();
-        let (along, length) = ((p - from).dot(tangent), (to - from).dot(tangent));
-        let gap = height - radii;
-        let is_over = along >= -overhang && along <= length + overhang;
-        let known = |touch: &Touch| ((touch.on_a + touch.on_b) * 0.5 - p).dot(tangent).abs() < 0.5 * radii;
-        over |= u64::from(is_over) << (k % 64);
-        if is_over && gap < margin && !out.iter().any(known) {
-            let place = Place { vertex: k as u32, on: face as u32 };
-            out.push(named(over_face(a, b, p, (height, normal), place)));
-        }
-    }
-    over
-}
-
-/// The face of a piece that a point is farthest above (or least below), and how far.
-fn face_below(p: Vector64, piece: &PieceView) -> Option<(usize, f64)> {
-    let mut best: Option<(usize, f64)> = None;
-    let mut cut = f64::NEG_INFINITY;
-    for (k, (&v, &n)) in piece.vertices.iter().zip(piece.normals).enumerate() {
-        let height = (p - v).dot(n);
-        if !piece.outer[k] {
-            cut = cut.max(height);
-        } else if best.is_none_or(|(_, highest)| height > highest) {
-            best = Some((k, height));
-        }
-    }
-    // Inside the solid but beyond a cut lies another of its pieces, which then has the say.
-    best.filter(|&(_, height)| !piece.is_round() && (height >= 0.0 || cut <= 0.0))
-}
-
-/// Adds the closest pair of vertices neither of which is over a face: for discs, and for corners that
-/// meet. Without this rule flush boxes would catch each other at their corners.
-fn closest_vertices(a: &PieceView, b: &PieceView, over: (u64, u64), margin: f64, out: &mut Vec<Touch>) {
-    let free = |piece: &PieceView, over: u64, k: usize| piece.sampled[k] && over >> (k % 64) & 1 == 0;
-    let mut best: Option<(f64, usize, usize)> = None;
-    for (i, &p) in a.vertices.iter().enumerate().filter(|&(i, _)| free(a, over.0, i)) {
-        for (j, &q) in b.vertices.iter().enumerate().filter(|&(j, _)| free(b, over.1, j)) {
-            let square = (p - q).length_squared();
-            if best.is_none_or(|(least, ..)| square < least) {
-                best = Some((square, i, j));
+        for (cache, index) in self.found.caches.iter().zip(0u32..) {
+            let span = &mut self.pairs.spans[cache.pair as usize];
+            if span.count == 0 {
+                span.first = index;
             }
+            span.count += 1;
         }
     }
-    let Some((square, i, j)) = best else { return };
-    let (p, q) = (a.vertices[i], b.vertices[j]);
-    let reach = a.radius + b.radius;
-    let known = |touch: &Touch| (touch.on_a - p).length_squared() < reach * reach;
-    if square.sqrt() - reach < margin && !out.iter().any(known) {
-        // A disc has one vertex: the corner of the other is the better name.
-        out.push(if b.is_round() && !a.is_round() {
-            at_vertices(b, a, q, p, Place { vertex: j as u32, on: i as u32 | VERTEX }).reversed()
+
+    /// Keeps the contacts of sleeping pairs aside, with forces in place of impulses.
+    pub fn freeze(&mut self, bodies: &Bodies, dt: f64) {
+        let mut frozen = ContactSet::default();
+        for (pair, span) in self.pairs.all.iter().zip(&mut self.pairs.spans) {
+            let active = |body: u32| bodies.asleep.get(body as usize).is_some() && bodies.is_active(body as usize);
+            if active(pair.bodies.0) || active(pair.bodies.1) || span.count == 0 {
+                continue;
+            }
+            let start = frozen.contacts.len();
+            let known = if span.frozen { &self.frozen } else { &self.found };
+            frozen.contacts.extend_from_slice(&known.contacts[span.range()]);
+            frozen.caches.extend_from_slice(&known.caches[span.range()]);
+            if !span.frozen {
+                frozen.contacts[start..].iter_mut().for_each(|contact| contact.scale_impulses(1.0 / (dt * dt)));
+            }
+            (span.first, span.frozen) = (start as u32, true);
+        }
+        self.frozen = frozen;
+    }
+
+    /// The narrow phase over all active pairs; contacts come in the order of the pairs.
+    fn collide(&mut self, bodies: &Bodies, moment: &StepContext) {
+        let (mut coming, mut tasks) = (std::mem::take(&mut self.coming), std::mem::take(&mut self.tasks));
+        coming.clear();
+        let (pieces, pairs, last, frozen) = (&self.pieces, &self.pairs, &self.found, &self.frozen);
+        let search = PairContacts { pieces, pairs, bodies, moment, last, frozen };
+        let active = &pairs.active;
+        if active.len() < PARALLEL_FROM || rayon::current_num_threads() == 1 {
+            active.iter().for_each(|pair| search.pair(pair.index, &mut coming));
         } else {
-            at_vertices(a, b, p, q, Place { vertex: i as u32, on: j as u32 | VERTEX })
-        });
-    }
-}
-
-/// Cores that overlap: one direction out, over the face that needs the shortest way.
-fn overlapping_cores(a: &PieceView, b: &PieceView, out: &mut Vec<Touch>) {
-    let (over_b, over_a) = (shallowest_face(a, b), shallowest_face(b, a));
-    let least = |way: Option<(usize, f64)>| way.map_or(f64::NEG_INFINITY, |(_, depth)| depth);
-    let radii = a.radius + b.radius;
-    let mut push_out = |a: &PieceView, b: &PieceView, face: usize, named: fn(Touch) -> Touch| {
-        let (from, normal) = (b.vertices[face], b.normals[face]);
-        for (k, &p) in a.vertices.iter().enumerate() {
-            let height = (p - from).dot(normal);
-            if height < radii {
-                let place = Place { vertex: k as u32, on: face as u32 };
-                out.push(named(over_face(a, b, p, (height, normal), place)));
-            }
+            tasks.resize_with(tasks.len().max(active.len().div_ceil(CHUNK)), ContactSet::default);
+            tasks.par_iter_mut().zip(active.par_chunks(CHUNK)).for_each(|(task, pairs)| {
+                pairs.iter().for_each(|pair| search.pair(pair.index, task));
+            });
+            tasks.iter_mut().for_each(|task| coming.append(task));
         }
-    };
-    match (over_b, over_a) {
-        (Some((face, depth)), _) if depth >= least(over_a) => push_out(a, b, face, |touch| touch),
-        (_, Some((face, _))) => push_out(b, a, face, Touch::reversed),
-        _ => {}
+        (self.tasks, self.coming) = (tasks, coming);
     }
-}
-
-/// The outer face of `b` with the largest separation from `a`.
-fn shallowest_face(a: &PieceView, b: &PieceView) -> Option<(usize, f64)> {
-    let faces = (0..b.vertices.len()).filter(|&k| b.outer[k]);
-    faces.map(|k| (k, lowest(a, b.vertices[k], b.normals[k]))).reduce(|x, y| if y.1 > x.1 { y } else { x })
 }

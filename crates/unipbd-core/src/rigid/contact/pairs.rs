@@ -65,7 +65,7 @@ pub(super) struct Relation {
 
 /// Where the bodies were when what touches was sought, and with what.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
-pub(super) struct Sought {
+pub(super) struct SearchRecord {
     pub at: Relation,
     /// Gap below which contacts were found [m].
     pub margin: f64,
@@ -86,8 +86,8 @@ impl Relation {
     }
 }
 
-impl Sought {
-    pub const NEVER: Sought = Sought {
+impl SearchRecord {
+    pub const NEVER: SearchRecord = SearchRecord {
         at: Relation { offset: Vector64::ZERO, angles: [0.0; 2] },
         margin: f64::NEG_INFINITY,
         room: f64::NEG_INFINITY,
@@ -102,7 +102,7 @@ pub(super) struct Pairs {
     fat: Vec<Bounds>,
     pub all: Vec<Pair>,
     pub spans: Vec<Span>,
-    pub sought: Vec<Sought>,
+    pub sought: Vec<SearchRecord>,
     /// Pairs of which a body can move.
     pub active: Vec<Active>,
     /// Which bodies could move when `active` was listed.
@@ -207,7 +207,7 @@ impl Pairs {
             while old.next_if(|(pair, _)| pair.key < key).is_some() {}
             let known = old.next_if(|(pair, _)| pair.key == key);
             let (pair, (span, sought)) =
-                known.unwrap_or_else(|| (Pair::new(pieces, key), (Span::default(), Sought::NEVER)));
+                known.unwrap_or_else(|| (Pair::new(pieces, key), (Span::default(), SearchRecord::NEVER)));
             self.all.push(pair);
             self.spans.push(span);
             self.sought.push(sought);

@@ -22,7 +22,7 @@ impl World {
         let liquids = self.survey(self.down(), is_liquid);
         let fluids = if self.has_gas() { self.survey(self.down(), Phase::is_fluid) } else { liquids };
         let demand = self.demand(liquids);
-        self.clock.pressure_limit = self.believed(fluids);
+        self.clock.pressure_limit = self.pressure_limit_of(fluids);
         let (rule, last, frame) = (self.parts.substeps, self.clock.substeps, self.parts.frame_time);
         let choice = rule.choose_after(last, frame, demand);
         self.clock.stiffness = rule.stiffness_after(last, self.clock.stiffness, frame, demand, choice.substeps);
@@ -40,11 +40,11 @@ impl World {
         choice.substeps
     }
 
-    pub(in crate::step) fn warn_of_cut(&mut self, effect: &str, granted: f64) {
-        let wanted = (f64::from(self.clock.substeps) / granted).ceil();
+    pub(in crate::step) fn warn_of_cut(&mut self, effect: &str, stable_fraction: f64) {
+        let wanted = (f64::from(self.clock.substeps) / stable_fraction).ceil();
         let message = format!(
             "{effect} cut to {:.3} of what the scene asks for: {wanted} substeps per frame would bear it, {} were taken",
-            granted, self.clock.substeps
+            stable_fraction, self.clock.substeps
         );
         self.events.push(Event { time: self.clock.time, severity: Severity::Warning, message });
     }
@@ -93,10 +93,10 @@ impl World {
 
     /// The pressure that a fluid as deep and as fast as this one can reach, with a wide margin [m^2/s^2].
     pub(in crate::step) fn pressure_limit(&self) -> f64 {
-        self.believed(self.survey(self.down(), Phase::is_fluid))
+        self.pressure_limit_of(self.survey(self.down(), Phase::is_fluid))
     }
 
-    fn believed(&self, fluids: FluidStatistics) -> f64 {
+    fn pressure_limit_of(&self, fluids: FluidStatistics) -> f64 {
         let least = LEAST_SPEED * self.parts.spacing / self.parts.frame_time;
         PRESSURE_MARGIN * (self.depth_pressure(fluids) + 0.5 * fluids.square_of_speed()) + least * least
     }

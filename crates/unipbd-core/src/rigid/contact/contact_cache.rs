@@ -1,6 +1,6 @@
 //! A point of a contact, and what is read once or seldom of it.
 
-use super::narrow_phase::Place;
+use super::collide::FeaturePair;
 use crate::rigid::Surface;
 
 /// One point of a contact, as the sweeps see it.
@@ -28,21 +28,28 @@ impl Point {
 
 /// What else belongs to a contact.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
-pub(super) struct Site {
+pub(super) struct ContactCache {
     pub pair: u32,
     /// The wall touched, or `NONE`.
     pub wall: u32,
     pub surface: Surface,
     /// Which vertices and faces touch at each point.
-    pub places: [Place; 2],
+    pub features: [FeaturePair; 2],
     /// Normal velocities at the start of the substep [m/s].
     pub approach: [f64; 2],
     /// Impulses of the rebound [kg m/s]; 0 where nothing rebounded.
     pub rebound: [f64; 2],
 }
 
-impl Site {
-    pub fn new(pair: u32, wall: u32, surface: Surface) -> Site {
-        Site { pair, wall, surface, places: [Place::default(); 2], approach: [0.0; 2], rebound: [0.0; 2] }
+impl ContactCache {
+    pub fn new(pair: u32, wall: u32, surface: Surface) -> ContactCache {
+        ContactCache {
+            pair,
+            wall,
+            surface,
+            features: [FeaturePair::default(); 2],
+            approach: [0.0; 2],
+            rebound: [0.0; 2],
+        }
     }
 }

@@ -8,31 +8,31 @@ pub(crate) const GROUP: usize = 4;
 
 /// The bounding box of vectors, gathered in four lanes.
 #[derive(Clone, Copy)]
-pub(crate) struct Spread {
+pub(crate) struct Aabb {
     low: [Vector; GROUP],
     high: [Vector; GROUP],
     /// Not a number where any vector is infinite or not a number, else zero.
     strange: [Vector; GROUP],
 }
 
-impl Spread {
-    pub const NONE: Spread = Spread {
+impl Aabb {
+    pub const NONE: Aabb = Aabb {
         low: [Vector::splat(Real::INFINITY); GROUP],
         high: [Vector::splat(Real::NEG_INFINITY); GROUP],
         strange: [Vector::ZERO; GROUP],
     };
 
     /// That of all points.
-    pub fn of(points: &[Vector], parallelism: Parallelism) -> Spread {
+    pub fn of(points: &[Vector], parallelism: Parallelism) -> Aabb {
         let of_rows = |points: &[Vector]| {
-            let (mut spread, (groups, rest)) = (Spread::NONE, points.as_chunks::<GROUP>());
+            let (mut spread, (groups, rest)) = (Aabb::NONE, points.as_chunks::<GROUP>());
             groups.iter().for_each(|group| spread.add(group));
             if let Some(last) = rest.len().checked_sub(1) {
                 spread.add(&std::array::from_fn(|k| rest[k.min(last)]));
             }
             spread
         };
-        parallelism.reduce(points.len(), |rows| of_rows(&points[rows]), Spread::join)
+        parallelism.reduce(points.len(), |rows| of_rows(&points[rows]), Aabb::join)
     }
 
     #[inline(always)]
@@ -44,8 +44,8 @@ impl Spread {
         }
     }
 
-    pub fn join(self, other: Spread) -> Spread {
-        Spread {
+    pub fn join(self, other: Aabb) -> Aabb {
+        Aabb {
             low: std::array::from_fn(|k| lower(self.low[k], other.low[k])),
             high: std::array::from_fn(|k| -lower(-self.high[k], -other.high[k])),
             strange: std::array::from_fn(|k| self.strange[k] + other.strange[k]),
@@ -78,7 +78,7 @@ mod tests {
     #[test]
     fn corners_hold_all_points_and_what_is_not_finite_is_told() {
         let mut points: Vec<Vector> = (0..13).map(|k| Vector::new(k as Real, -2.0 * k as Real)).collect();
-        let of = |points: &[Vector]| Spread::of(points, Parallelism::Serial);
+        let of = |points: &[Vector]| Aabb::of(points, Parallelism::Serial);
         assert_eq!(of(&points).corners(), (Vector::new(0.0, -24.0), Vector::new(12.0, 0.0)));
         assert!(of(&points).is_finite());
         points[12].x = Real::NAN;

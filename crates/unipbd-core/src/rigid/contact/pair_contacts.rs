@@ -1,34 +1,35 @@
 //! What touches in one pair: measured again where it is known, else sought by the narrow phase.
 
-use super::find::{Found, Moment};
-use super::manifold::{Contact, Site};
-use super::narrow_phase::{self, Finding, Place, Touch};
-use super::pairs::{Kind, Pair, Pairs, Relation, Sought, Span};
+use super::collide::{self, FeaturePair, Proximity, Touch};
+use super::contact_cache::ContactCache;
+use super::contact_set::{ContactSet, StepContext};
+use super::manifold::Contact;
+use super::pairs::{Kind, Pair, Pairs, Relation, SearchRecord, Span};
 use super::pieces::Pieces;
 use crate::math::Vector64;
 use crate::rigid::Bodies;
 
 /// What the search in a pair sees.
-pub(super) struct Search<'a> {
+pub(super) struct PairContacts<'a> {
     pub pieces: &'a Pieces,
     pub pairs: &'a Pairs,
     pub bodies: &'a Bodies,
-    pub moment: &'a Moment,
+    pub moment: &'a StepContext,
     /// Contacts of the last substep.
-    pub last: &'a Found,
+    pub last: &'a ContactSet,
     /// Contacts that slept.
-    pub frozen: &'a Found,
+    pub frozen: &'a ContactSet,
 }
 
-impl Search<'_> {
+impl PairContacts<'_> {
     /// Appends the contacts of a pair.
-    pub fn pair(&self, index: u32, out: &mut Found) {
+    pub fn pair(&self, index: u32, out: &mut ContactSet) {
         let pair = &self.pairs.all[index as usize];
         let margin = self.pairs.margin(pair);
         let start = out.contacts.len();
         match pair.kind {
             Kind::Discs => {
-                if let Some(touch) = narrow_phase::discs(self.pieces, pair.pieces, margin) {
+                if let Some(touch) = collide::discs(self.pieces, pair.pieces, margin) {
                     self.add(index, pair, &touch, start, out);
                 }
             }
@@ -48,7 +49,7 @@ impl Search<'_> {
     }
 
     /// Measures what touched in the last substep. Tells whether that is still one contact where it was.
-    fn measure(&self, index: u32, pair: &Pair, out: &mut Found) -> bool {
+    fn measure(&self, index: u32, pair: &Pair, out: &mut ContactSet) -> bool {
         let span = self.pairs.spans[index as usize];
         if span.count == 0 {
             return true;
@@ -58,23 +59,23 @@ impl Search<'_> {
         }
         let (a, centers) = (self.pieces.view(pair.pieces.0), self.centers(pair));
         let plane = self.pieces.half_plane(pair.pieces.1);
-        let measure = |place: Place| match plane {
-            Some(plane) => narrow_phase::again_on_half_plane(&a, plane, place),
-            None => narrow_phase::again(&a, &self.pieces.view(pair.pieces.1), place),
+        let measure = |feature: FeaturePair| match plane {
+            Some(plane) => collide::again_on_half_plane(&a, plane, feature),
+            None => collide::again(&a, &self.pieces.view(pair.pieces.1), feature),
         };
-        for (old, known) in self.last.contacts[span.range()].iter().zip(&self.last.sites[span.range()]) {
-            let first = measure(known.places[0]);
+        for (old, known) in self.last.contacts[span.range()].iter().zip(&self.last.caches[span.range()]) {
+            let first = measure(known.features[0]);
             let mut contact = Contact::new(pair.bodies, first.normal, pair.rolling_arm);
             contact.add(&first, centers);
             if old.points().len() == 2 {
-                let second = measure(known.places[1]);
+                let second = measure(known.features[1]);
                 if !contact.is_along(second.normal) {
                     return false;
                 }
                 contact.add(&second, centers);
             }
-            let mut site = Site::new(index, pair.wall, pair.surface);
-            site.places = known.places;
+            let mut cache = ContactCache::new(index, pair.wall, pair.surface);
+            cache.features = known.features;
             let rebounded = known.rebound != [0.0; 2];
             contact.rolling_impulse = if rebounded { 0.0 } else { old.rolling_impulse * self.moment.kept };
             for (k, (point, old)) in contact.points_mut().iter_mut().zip(old.points()).enumerate() {
@@ -82,37 +83,37 @@ impl Search<'_> {
                     point.keep(old, self.moment.kept);
                 }
             }
-            contact.note_velocities(&mut site, &self.bodies.velocities, self.moment.slow);
+            contact.note_velocities(&mut cache, &self.bodies.velocities, self.moment.slow);
             out.contacts.push(contact);
-            out.sites.push(site);
+            out.caches.push(cache);
         }
         true
     }
 
     /// Seeks what touches, with gaps below `margin`.
-    fn seek(&self, index: u32, pair: &Pair, margin: f64, out: &mut Found) {
+    fn seek(&self, index: u32, pair: &Pair, margin: f64, out: &mut ContactSet) {
         let mut touches = std::mem::take(&mut out.touches);
         touches.clear();
         let mut margin = margin;
         let room = match self.pieces.half_plane(pair.pieces.1) {
             Some(plane) => {
-                narrow_phase::against_half_plane(&self.pieces.view(pair.pieces.0), plane, margin, &mut touches);
+                collide::against_half_plane(&self.pieces.view(pair.pieces.0), plane, margin, &mut touches);
                 f64::INFINITY
             }
             None => {
                 let bounds = |piece: u32| &self.pieces.bounds[piece as usize];
                 let apart = bounds(pair.pieces.0).distance(bounds(pair.pieces.1));
                 let view = |piece: u32| self.pieces.view(piece);
-                let finding = if apart > margin {
+                let proximity = if apart > margin {
                     margin = apart;
-                    Finding::Apart
+                    Proximity::Apart
                 } else {
-                    narrow_phase::between(&view(pair.pieces.0), &view(pair.pieces.1), margin, &mut touches)
+                    collide::between(&view(pair.pieces.0), &view(pair.pieces.1), margin, &mut touches)
                 };
-                match finding {
-                    Finding::Apart => f64::INFINITY,
-                    Finding::Near => pair.slack,
-                    Finding::Deep => f64::NEG_INFINITY,
+                match proximity {
+                    Proximity::Apart => f64::INFINITY,
+                    Proximity::Near => pair.slack,
+                    Proximity::Overlapping => f64::NEG_INFINITY,
                 }
             }
         };
@@ -122,7 +123,7 @@ impl Search<'_> {
         }
         out.touches = touches;
         if pair.kind != Kind::DiscOnPlane {
-            out.renewed.push((index, Sought { at: Relation::of(pair.bodies, self.bodies), margin, room }));
+            out.renewed.push((index, SearchRecord { at: Relation::of(pair.bodies, self.bodies), margin, room }));
         }
     }
 
@@ -132,52 +133,53 @@ impl Search<'_> {
     }
 
     /// Adds a point to the contacts of the pair, which begin at `start`.
-    fn add(&self, index: u32, pair: &Pair, touch: &Touch, start: usize, out: &mut Found) {
+    fn add(&self, index: u32, pair: &Pair, touch: &Touch, start: usize, out: &mut ContactSet) {
         let fitting = out.contacts[start..].iter().position(|contact| contact.has_room(touch.normal));
         let place = fitting.map_or(out.contacts.len(), |place| start + place);
         if place == out.contacts.len() {
             out.contacts.push(Contact::new(pair.bodies, touch.normal, pair.rolling_arm));
-            out.sites.push(Site::new(index, pair.wall, pair.surface));
+            out.caches.push(ContactCache::new(index, pair.wall, pair.surface));
         }
         let contact = &mut out.contacts[place];
-        out.sites[place].places[contact.points().len()] = touch.place;
+        out.caches[place].features[contact.points().len()] = touch.feature;
         contact.add(touch, self.centers(pair));
     }
 
     /// Gives the contacts from `start` on the impulses that their pair had, and notes velocities.
-    fn hand_on(&self, span: Span, start: usize, out: &mut Found) {
+    fn hand_on(&self, span: Span, start: usize, out: &mut ContactSet) {
         let known = if span.frozen { self.frozen } else { self.last };
         let scale = if span.frozen { self.moment.dt * self.moment.dt } else { self.moment.kept };
-        let known = (&known.contacts[span.range()], &known.sites[span.range()]);
-        for (contact, site) in out.contacts[start..].iter_mut().zip(&mut out.sites[start..]) {
+        let known = (&known.contacts[span.range()], &known.caches[span.range()]);
+        for (contact, cache) in out.contacts[start..].iter_mut().zip(&mut out.caches[start..]) {
             if span.count > 0 {
-                let near = self.pairs.all[site.pair as usize].near;
-                keep((contact, site), known, 5.0 * near, scale);
+                let near = self.pairs.all[cache.pair as usize].near;
+                keep((contact, cache), known, 5.0 * near, scale);
             }
-            contact.note_velocities(site, &self.bodies.velocities, self.moment.slow);
+            contact.note_velocities(cache, &self.bodies.velocities, self.moment.slow);
         }
     }
 }
 
 /// Gives a contact the impulses of the same points in the last substep: the same vertex, or else the
 /// same place. Where something rebounded they are no guess of what comes.
-fn keep((contact, site): (&mut Contact, &Site), known: (&[Contact], &[Site]), near: f64, scale: f64) {
+fn keep((contact, cache): (&mut Contact, &ContactCache), known: (&[Contact], &[ContactCache]), near: f64, scale: f64) {
     let old = || {
         let rows = known.0.iter().zip(known.1);
-        rows.flat_map(|(contact, site)| (0..contact.points().len()).map(move |k| (contact, site, k)))
+        rows.flat_map(|(contact, cache)| (0..contact.points().len()).map(move |k| (contact, cache, k)))
     };
     for k in 0..contact.points().len() {
         let arm = contact.arm_a(&contact.points()[k]);
-        let named = |&(_, known, j): &(&Contact, &Site, usize)| known.places[j].vertex == site.places[k].vertex;
-        let close = |&(contact, _, j): &(&Contact, &Site, usize)| {
+        let named =
+            |&(_, known, j): &(&Contact, &ContactCache, usize)| known.features[j].vertex == cache.features[k].vertex;
+        let close = |&(contact, _, j): &(&Contact, &ContactCache, usize)| {
             (contact.arm_a(&contact.points()[j]) - arm).length_squared() < near * near
         };
         let same = old().find(named).or_else(|| old().find(close));
-        if let Some((old, _, j)) = same.filter(|(_, site, j)| site.rebound[*j] == 0.0) {
+        if let Some((old, _, j)) = same.filter(|(_, cache, j)| cache.rebound[*j] == 0.0) {
             contact.points_mut()[k].keep(&old.points()[j], scale);
         }
     }
-    let rebounded = known.1.iter().any(|site| site.rebound != [0.0; 2]);
+    let rebounded = known.1.iter().any(|cache| cache.rebound != [0.0; 2]);
     if let Some(first) = known.0.first().filter(|_| !rebounded) {
         contact.rolling_impulse = first.rolling_impulse * scale;
     }
