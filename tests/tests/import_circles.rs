@@ -44,7 +44,8 @@ fn named_paths(code: &str) -> Vec<String> {
         }
     }
     for start in ["crate::", "super::", "self::"] {
-        for (at, _) in code.match_indices(start) {
+        let begins = |at: usize| !code[..at].ends_with(|c: char| c.is_alphanumeric() || c == '_' || c == ':');
+        for (at, _) in code.match_indices(start).filter(|(at, _)| begins(*at)) {
             let path = code[at..].split(|c: char| !(c.is_alphanumeric() || c == '_' || c == ':')).next();
             paths.extend(path.map(str::to_owned));
         }

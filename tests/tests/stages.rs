@@ -1,8 +1,9 @@
 //! A scene runs the stages it needs and no other.
 
 use unipbd_core::Stage::{
-    self, AdvectSmoke, BeginGroups, Contacts, ContactsAgain, Effects, Emit, FindNeighbors, FinishGroups, MoveBodies,
-    Predict, Project, UpdateVelocities,
+    self, AdvectSmoke, BeginGroups, Contacts, ContactsAgain, Effects, Emit, FindNeighbors, FinishBodies, FinishGroups,
+    KeepOutOfWalls, MoveBodies, PlaceSamples, Predict, Project, RefreshNeighbors, SettleSamples, StoreDensity,
+    UpdateVelocities,
 };
 use unipbd_core::math::Vector64;
 use unipbd_tests::{Prescribed, build, run, scene, shipped};
@@ -13,7 +14,8 @@ fn assert_stages(text: &str, stages: &[Stage]) {
     assert_eq!(solver.stages(), stages);
     run(&mut solver, 1, |_| ());
     let timed: Vec<&str> = solver.timings().iter().map(|(name, _)| *name).collect();
-    let expected: Vec<&str> = stages.iter().map(|stage| stage.name()).collect();
+    let ends = if stages.contains(&Contacts) { &[FinishBodies][..] } else { &[] };
+    let expected: Vec<&str> = stages.iter().chain(ends).map(|stage| stage.name()).collect();
     assert_eq!(timed, expected, "every stage is timed under its own name");
 }
 
@@ -48,18 +50,21 @@ fn free_flight_has_two_stages() {
 #[test]
 fn grains_between_walls_are_projected_without_neighbours() {
     let walled = format!("{GRAINS}[[half_plane]]\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n");
-    assert_stages(&walled, &[Predict, Project, UpdateVelocities]);
+    assert_stages(&walled, &[Predict, KeepOutOfWalls, UpdateVelocities]);
 }
 
 #[test]
 fn water_has_neighbours_and_one_projection() {
-    assert_stages(WATER, &[Predict, FindNeighbors, BeginGroups, Project, UpdateVelocities]);
+    assert_stages(WATER, &[Predict, FindNeighbors, BeginGroups, Project, StoreDensity, UpdateVelocities]);
 }
 
 #[test]
 fn viscous_water_adds_the_effects() {
     let viscous = WATER.replace("name = \"water\"\n[[block", "name = \"water\"\nviscosity = 0.1\n[[block");
-    assert_stages(&viscous, &[Predict, FindNeighbors, BeginGroups, Project, UpdateVelocities, Effects]);
+    assert_stages(
+        &viscous,
+        &[Predict, FindNeighbors, BeginGroups, Project, StoreDensity, UpdateVelocities, RefreshNeighbors, Effects],
+    );
 }
 
 #[test]
@@ -69,26 +74,49 @@ fn bodies_alone_need_no_neighbours_and_no_density() {
 
 #[test]
 fn bodies_in_water_are_solved_before_and_after_the_fluid() {
-    let all = [Predict, Contacts, FindNeighbors, BeginGroups, Project, ContactsAgain, UpdateVelocities, MoveBodies];
+    let all = [
+        Predict,
+        Contacts,
+        PlaceSamples,
+        FindNeighbors,
+        BeginGroups,
+        Project,
+        StoreDensity,
+        ContactsAgain,
+        UpdateVelocities,
+        MoveBodies,
+        SettleSamples,
+    ];
     assert_stages(&format!("{WATER}{BALL}"), &all);
 }
 
 #[test]
 fn the_shipped_plume_emits_and_advects() {
-    let stages = [Emit, Predict, FindNeighbors, BeginGroups, Project, UpdateVelocities, Effects, AdvectSmoke];
+    let stages = [
+        Emit,
+        Predict,
+        FindNeighbors,
+        BeginGroups,
+        Project,
+        StoreDensity,
+        UpdateVelocities,
+        RefreshNeighbors,
+        Effects,
+        AdvectSmoke,
+    ];
     assert_eq!(build(&shipped("open_gas.toml").scene, 1).stages(), stages);
 }
 
 #[test]
 fn still_gas_in_a_box_has_no_effects() {
     let gas = WATER.replace("liquid", "gas");
-    assert_stages(&gas, &[Predict, FindNeighbors, BeginGroups, Project, UpdateVelocities]);
+    assert_stages(&gas, &[Predict, FindNeighbors, BeginGroups, Project, StoreDensity, UpdateVelocities]);
 }
 
 #[test]
 fn a_group_that_asks_for_a_velocity_pass_gets_its_stage() {
     let mut solver = build(&scene(WATER), 1);
     solver.add_group(Box::new(Prescribed(|_: Vector64| Vector64::ZERO)));
-    let stages = [Predict, FindNeighbors, BeginGroups, Project, UpdateVelocities, FinishGroups];
+    let stages = [Predict, FindNeighbors, BeginGroups, Project, StoreDensity, UpdateVelocities, FinishGroups];
     assert_eq!(solver.stages(), stages);
 }

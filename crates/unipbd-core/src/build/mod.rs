@@ -18,7 +18,7 @@ use crate::parallel::Parallelism;
 use crate::particles::{NewParticle, OptionalColumns, Particles};
 use crate::periodic::{Periodic, PeriodicAxis};
 use crate::phase::{MaterialIndex, Phase};
-use crate::pressure_grid::CoarseProjection;
+use crate::pressure_grid::PressureGrid;
 use crate::rng::Rng;
 use crate::scene::{BodySolver, GradientPoint, MaterialRef, Points, Problems, Scene, disc_points};
 use crate::sleep::LiquidSleep;
@@ -100,8 +100,8 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         walls: Walls::new(scene),
         neighbors: Neighbors::new(periodic, reach, real(least_skin), cost),
         search_positions,
-        coarse: (scene.solver.coarse_projection > 0)
-            .then(|| CoarseProjection::new(real(scene.spacing), scene.solver.coarse_projection)),
+        pressure_grid: (scene.solver.coarse_projection > 0)
+            .then(|| PressureGrid::new(real(scene.spacing), scene.solver.coarse_projection)),
         groups,
         effects,
         smoke: (!scene.smoke.is_empty()).then(|| SmokeAdvection::new(scene)),

@@ -2,12 +2,23 @@ use crate::bytes::held;
 use crate::math::{Vector, Vector64};
 use std::ops::Range;
 
-/// What a group wants to move. Added up, then applied by the loop at once.
+/// The parts of corrections that a scene has beside displacements.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct CorrectionParts {
+    /// Rows may also be samples of bodies, which carry loads.
+    pub loads: bool,
+    /// The pressure grid shifts rows before the groups do.
+    pub grid_shifts: bool,
+    /// Number of measured walls.
+    pub walls: usize,
+}
+
+/// The displacements and forces that a group asks for. They are summed, then applied by the loop at once.
 #[derive(Clone, Debug, Default)]
 pub struct Corrections {
     displacement: Vec<Vector>,
     shift: Vec<Vector>,
-    moved: bool,
+    parts: CorrectionParts,
     load: Vec<Vector>,
     wall_load: Vec<Vector64>,
 }
@@ -34,14 +45,9 @@ impl Corrections {
         &mut self.shift
     }
 
-    /// Rows were moved before by what velocities do not follow.
-    pub(crate) fn note_moved(&mut self) {
-        self.moved = true;
-    }
-
-    /// Whether any row moves by what its velocity does not follow.
+    /// Whether rows are moved in a way that their velocities do not follow.
     pub(crate) fn any_shifted(&self) -> bool {
-        self.moved || !self.shift.is_empty()
+        self.parts.grid_shifts || !self.shift.is_empty()
     }
 
     /// Forces on samples of rigid bodies times dt^2, by dense row [kg m]; empty in a scene without bodies.
@@ -73,16 +79,19 @@ impl Corrections {
         self.displacement[row] += displacement;
     }
 
-    /// Back to zero for the rows that are written, out of this many, this many that may be samples of
-    /// bodies, and measured walls.
-    pub(crate) fn reset(&mut self, rows: usize, written: [Range<usize>; 2], samples: usize, walls: usize) {
+    /// Selects the parts that the scene has.
+    pub(crate) fn select(&mut self, parts: CorrectionParts) {
+        self.parts = parts;
+    }
+
+    /// Clears the `written` bands of this many rows, and the loads of the first `listed` rows.
+    pub(crate) fn reset(&mut self, rows: usize, written: [Range<usize>; 2], listed: usize) {
         self.displacement.resize(rows, Vector::ZERO);
         written.into_iter().for_each(|band| self.displacement[band].fill(Vector::ZERO));
         self.shift.clear();
-        self.moved = false;
         self.load.clear();
-        self.load.resize(samples, Vector::ZERO);
+        self.load.resize(if self.parts.loads { listed } else { 0 }, Vector::ZERO);
         self.wall_load.clear();
-        self.wall_load.resize(walls, Vector64::ZERO);
+        self.wall_load.resize(self.parts.walls, Vector64::ZERO);
     }
 }

@@ -1,7 +1,7 @@
 //! The density constraint as printed in Macklin & Müller 2013, for comparison: see
 //! [`MassDensityDescription`](crate::scene::MassDensityDescription).
 
-use super::{ConstraintGroup, Corrections, DensityColumns, Needs, Substep};
+use super::{ConstraintGroup, Corrections, DensityColumns, DensityGroup, Needs, Substep};
 use crate::bytes::held;
 use crate::kernel::Kernel;
 use crate::math::{Real, Vector, real};
@@ -171,11 +171,17 @@ impl ConstraintGroup for MassDensity {
         Some(f64::from(self.error.iter().copied().fold(0.0, Real::max)))
     }
 
-    fn density(&self) -> Option<DensityColumns<'_>> {
-        Some(DensityColumns { error: &self.error, multiplier: &self.multiplier })
+    fn as_density(&self) -> Option<&dyn DensityGroup> {
+        Some(self)
+    }
+}
+
+impl DensityGroup for MassDensity {
+    fn columns(&self) -> DensityColumns<'_> {
+        DensityColumns { error: &self.error, multiplier: &self.multiplier }
     }
 
-    fn measure_density(&self, now: Substep<'_>) -> Option<Vec<Real>> {
+    fn measure_density(&self, now: Substep<'_>) -> Vec<Real> {
         let (positions, material_of) = (now.particles.positions(), now.particles.materials());
         let (kernel, periodic) = (self.kernel, now.neighbors.periodic());
         let mut errors = vec![0.0; now.particles.len()];
@@ -190,6 +196,6 @@ impl ConstraintGroup for MassDensity {
                 *error = density * own.inverse_density - 1.0;
             }
         });
-        Some(errors)
+        errors
     }
 }

@@ -18,6 +18,7 @@ use std::ops::BitOr;
 
 pub use adhesion::Adhesion;
 pub use batch::{Batch, Constraint};
+pub(crate) use corrections::CorrectionParts;
 pub use corrections::Corrections;
 pub use density::{Density, DensityMaterial, DensitySettings};
 pub use distance::{Distance, Tether};
@@ -121,32 +122,12 @@ pub trait ConstraintGroup: Send + Sync {
         None
     }
 
-    /// Density errors and multipliers by row, where this is the density group.
-    fn density(&self) -> Option<DensityColumns<'_>> {
+    /// This group as the one that holds the density, if it does.
+    fn as_density(&self) -> Option<&dyn DensityGroup> {
         None
     }
 
-    /// Density errors at the positions as they are now, where this is the density group.
-    fn measure_density(&self, now: Substep<'_>) -> Option<Vec<Real>> {
-        let _ = now;
-        None
-    }
-
-    /// Pressure over density by row, from the multipliers of the last substep [m^2/s^2], where this is a
-    /// density group that can tell it from the momentum they carry.
-    fn measure_pressure(&self, now: Substep<'_>) -> Option<Vec<Real>> {
-        let _ = now;
-        None
-    }
-
-    /// The largest of these pressures, from the rows that may have it, where this is a group that can tell
-    /// [m^2/s^2].
-    fn measure_pressure_max(&self, now: Substep<'_>) -> Option<Real> {
-        let _ = now;
-        None
-    }
-
-    /// What a saved state must hold beside the particles: words that [`restore`](Self::restore) takes.
+    /// State to be saved beside the particles: words that [`restore`](Self::restore) takes.
     fn save(&self) -> Vec<u64> {
         Vec::new()
     }
@@ -157,7 +138,28 @@ pub trait ConstraintGroup: Send + Sync {
     }
 }
 
-/// What a density group knows of each row after its last projection.
+/// A group that holds the density of the fluids.
+pub trait DensityGroup: ConstraintGroup {
+    /// Density errors and multipliers by row, after the last projection.
+    fn columns(&self) -> DensityColumns<'_>;
+
+    /// Density errors by row, at the present positions.
+    fn measure_density(&self, now: Substep<'_>) -> Vec<Real>;
+
+    /// Pressure over density by row [m^2/s^2], from the momentum that the multipliers of the last substep carry.
+    fn measure_pressure(&self, now: Substep<'_>) -> Option<Vec<Real>> {
+        let _ = now;
+        None
+    }
+
+    /// The largest of these pressures, sought among the rows with the largest multipliers [m^2/s^2].
+    fn measure_pressure_max(&self, now: Substep<'_>) -> Option<Real> {
+        let _ = now;
+        None
+    }
+}
+
+/// Results of a density group, by row.
 #[derive(Clone, Copy, Debug)]
 pub struct DensityColumns<'a> {
     /// C = rho/rho0 - 1.

@@ -82,6 +82,11 @@ impl RigidBodies {
         self.bodies.views()
     }
 
+    /// Whether particles move with the bodies: samples that a fluid meets, or ends of ropes.
+    pub(crate) fn has_followers(&self) -> bool {
+        self.first_sample.first() != self.first_sample.last() || !self.tied.is_empty()
+    }
+
     /// Whether both hold the same bodies, perhaps at different times.
     pub(crate) fn is_like(&self, other: &RigidBodies) -> bool {
         self.first_sample == other.first_sample && self.bodies.is_like(&other.bodies)
@@ -230,9 +235,10 @@ impl RigidBodies {
 
     /// Puts the bodies to sleep whose samples do.
     pub(crate) fn put_to_sleep(&mut self, particles: &Particles, rows: &RowIndex) {
-        let tired = |&body: &u32| !self.bodies.is_asleep(body) && self.sleeps_with_samples(body, particles, rows);
-        let tired: Vec<u32> = (0..self.bodies.len() as u32).filter(tired).collect();
-        self.contacts.put_to_sleep(&mut self.bodies, &tired);
+        let falling_asleep =
+            |&body: &u32| !self.bodies.is_asleep(body) && self.sleeps_with_samples(body, particles, rows);
+        let falling_asleep: Vec<u32> = (0..self.bodies.len() as u32).filter(falling_asleep).collect();
+        self.contacts.put_to_sleep(&mut self.bodies, &falling_asleep);
     }
 
     /// Ends a frame: sleep, mean loads.

@@ -18,7 +18,7 @@ mod transfer;
 use crate::bytes::held;
 use crate::math::{Real, Vector, Vector64, wide};
 use crate::parallel::Parallelism;
-use crate::particles::Particles;
+use crate::particles::{Particles, displaced};
 use crate::walls::{Hit, Walls};
 use lattice::Lattice;
 use multigrid::Multigrid;
@@ -37,7 +37,7 @@ const STEPS_OF_MOVES: u32 = 2;
 const FARTHEST: Real = 0.1;
 
 /// The coarse projection of a scene of one liquid.
-pub(crate) struct CoarseProjection {
+pub(crate) struct PressureGrid {
     spacing: Real,
     /// Steps of the solver for the pressure.
     steps: u32,
@@ -48,10 +48,10 @@ pub(crate) struct CoarseProjection {
     multigrid: Multigrid,
 }
 
-impl CoarseProjection {
+impl PressureGrid {
     /// For particles of this spacing [m], with this many steps of the solver for the pressure.
     pub(crate) fn new(spacing: Real, steps: u32) -> Self {
-        CoarseProjection {
+        PressureGrid {
             spacing,
             steps,
             lattice: Lattice::new(CELL * spacing),
@@ -104,7 +104,7 @@ impl CoarseProjection {
                     velocity[k] += change;
                     u[k] = velocity[k] * dt;
                     remainder[k] += shift.clamp(Vector::splat(-farthest), Vector::splat(farthest));
-                    x[k] = starts[k] + (u[k] + remainder[k]);
+                    x[k] = displaced(starts[k], u[k], remainder[k]);
                 }
             }
         });

@@ -1,7 +1,8 @@
 //! Diagnostics: sums and extremes over the state, computed when asked for.
 
+use super::Solver;
 use super::world::World;
-use super::{Solver, Stage};
+use crate::constraints::DensityGroup;
 use crate::math::{Real, Vector64, wide};
 use crate::observe::{Diagnostics, GroupDiagnostics, MaterialDiagnostics, WallForce};
 use crate::phase::Phase;
@@ -81,16 +82,21 @@ impl World {
         names.zip(&self.wall_forces).map(|(name, force)| WallForce { name: name.clone(), force: *force }).collect()
     }
 
+    /// The group that holds the density, if the scene has fluids.
+    fn density_group(&self) -> Option<&dyn DensityGroup> {
+        self.parts.groups.iter().find_map(|group| group.as_density())
+    }
+
     /// Density errors at the present positions by row; measured when first asked for.
     pub(super) fn density_errors(&self) -> &[Real] {
-        let searches = self.stages.contains(&Stage::FindNeighbors);
+        let searches = self.plan.has_neighbors();
         if searches && !self.parts.neighbors.is_current() {
             // Within a frame that an error interrupted there may be no list: the last substep's must do.
             return &self.parts.particles.density_error;
         }
         self.measured.density.get_or_init(|| {
             let now = World::now(&self.parts, &self.rows, &self.clock);
-            let measured = self.parts.groups.iter().find_map(|group| group.measure_density(now));
+            let measured = self.density_group().map(|group| group.measure_density(now));
             measured.unwrap_or_else(|| vec![0.0; self.parts.particles.len()])
         })
     }
@@ -177,8 +183,8 @@ impl World {
                 return vec![0.0; self.parts.particles.len()];
             }
             let now = World::now(&self.parts, &self.rows, &self.clock);
-            let groups = self.parts.groups.iter().filter(|_| self.can_read_momentum());
-            let measured = groups.filter_map(|group| group.measure_pressure(now)).next();
+            let group = self.density_group().filter(|_| self.can_read_momentum());
+            let measured = group.and_then(|group| group.measure_pressure(now));
             measured.unwrap_or_else(|| self.pressures_of_multipliers())
         })
     }
@@ -186,8 +192,8 @@ impl World {
     /// Whether pressures can be read from the momentum that pairs carry: with neighbours to look at, and where the
     /// multipliers carry all of it, no grid a part.
     fn can_read_momentum(&self) -> bool {
-        let listed = self.stages.contains(&Stage::FindNeighbors) && self.parts.neighbors.is_current();
-        listed && self.parts.coarse.is_none()
+        let listed = self.plan.has_neighbors() && self.parts.neighbors.is_current();
+        listed && self.parts.pressure_grid.is_none()
     }
 
     /// lambda/(m dt^2), as on the lattice at rest: for groups that cannot tell better.
@@ -204,7 +210,7 @@ impl World {
         }
         if self.can_read_momentum() {
             let now = World::now(&self.parts, &self.rows, &self.clock);
-            let measured = self.parts.groups.iter().find_map(|group| group.measure_pressure_max(now));
+            let measured = self.density_group().and_then(|group| group.measure_pressure_max(now));
             if let Some(largest) = measured {
                 return f64::from(largest);
             }

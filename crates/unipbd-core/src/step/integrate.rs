@@ -5,16 +5,13 @@
 //! out to 10^5 spacings from the origin, where x - x_n would lose gravity altogether.
 
 use crate::constraints::Corrections;
-use crate::math::{Real, Vector, larger, wide};
+use crate::math::{Real, Vector, wide};
 use crate::parallel::{CHUNK_ROWS, Parallelism};
-use crate::particles::Particles;
+use crate::particles::{Particles, displaced};
 use crate::periodic::Periodic;
 use crate::phase::{Phase, uniform};
 use crate::walls::{Hit, Walls};
 use std::ops::Range;
-
-/// Part of a displacement that goes on in the next substep of settling.
-const GOES_ON: Real = 0.9;
 
 /// Acceleration of a material by body forces.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,7 +104,7 @@ impl Moving<'_> {
         let position = &mut position[..rows];
         let mut shift = |k: usize| {
             displacement[k] = new(k, displacement[k]);
-            position[k] = start[k] + (displacement[k] + remainder[k]);
+            position[k] = displaced(start[k], displacement[k], remainder[k]);
         };
         if self.plain {
             (0..rows).for_each(shift);
@@ -118,7 +115,7 @@ impl Moving<'_> {
 
     /// Where a row is that was displaced so far: x = x_n + (u + rem).
     fn place(&self, k: usize, displacement: Vector) -> Vector {
-        self.start[k] + (displacement + self.remainder[k])
+        displaced(self.start[k], displacement, self.remainder[k])
     }
 }
 
@@ -188,7 +185,7 @@ pub(super) fn load_walls(particles: &Particles, corrections: &mut Corrections, w
             continue;
         }
         let mut displacement = particles.displacement[row] + corrections.displacements()[row];
-        let place = particles.start[row] + (displacement + particles.remainder[row]);
+        let place = displaced(particles.start[row], displacement, particles.remainder[row]);
         meet_walls(&mut displacement, (particles.start[row], place), walls, again, |hit, push| {
             if let Some(wall) = hit.measured {
                 corrections.wall_loads_mut()[usize::from(wall)] -= wide(push) / f64::from(inverse_mass);
@@ -295,51 +292,6 @@ pub(super) fn wrap(particles: &mut Particles, periodic: Periodic, parallelism: P
     if periodic.any() {
         for rows in particles.bands() {
             parallelism.update(&mut particles.position[rows], |_, position| *position = periodic.wrap(*position));
-        }
-    }
-}
-
-/// A substep of settling starts: without the velocities of the particles, but what the last projections pushed on
-/// has gone on ([`carry_momentum`]). It stays in the column of displacements until [`take_carried`].
-pub(super) fn hold(particles: &mut Particles, parallelism: Parallelism) {
-    particles.start.copy_from_slice(&particles.position);
-    for (row, phase) in particles.phase.iter().enumerate() {
-        if *phase != Phase::Smoke {
-            particles.position[row] = particles.start[row] + (particles.displacement[row] + particles.remainder[row]);
-        }
-    }
-    carry_remainders(particles, parallelism);
-    particles.start.copy_from_slice(&particles.position);
-}
-
-/// How far each row went on; from here on displacements are what is projected.
-pub(super) fn take_carried(particles: &mut Particles) -> Vec<Vector> {
-    let carried = particles.displacement.clone();
-    zero_displacements(particles);
-    carried
-}
-
-/// After a substep of settling: a part of its way will go on in the next one, while it is pushed the way it goes. A
-/// push through a deep liquid then takes as many substeps as it has layers, not as their square. Returns the
-/// longest way [m].
-pub(super) fn carry_momentum(particles: &mut Particles, carried: &[Vector]) -> f64 {
-    let mut farthest: Real = 0.0;
-    for ((displacement, phase), carried) in particles.displacement.iter_mut().zip(&particles.phase).zip(carried) {
-        if *phase != Phase::Smoke {
-            let way = *carried + *displacement;
-            farthest = larger(way.length_squared(), farthest);
-            let pushed = displacement.dot(way) > 0.0;
-            *displacement = if pushed { way * GOES_ON } else { Vector::ZERO };
-        }
-    }
-    f64::from(farthest).sqrt()
-}
-
-/// Nothing is displaced, and nothing goes on.
-pub(super) fn zero_displacements(particles: &mut Particles) {
-    for (displacement, phase) in particles.displacement.iter_mut().zip(&particles.phase) {
-        if *phase != Phase::Smoke {
-            *displacement = Vector::ZERO;
         }
     }
 }

@@ -5,6 +5,7 @@ mod diagnose;
 mod error;
 mod integrate;
 mod pipeline;
+mod settle;
 mod sleep;
 mod solver;
 mod stages;

@@ -1,92 +1,185 @@
-//! The stages of a substep: the page to read first.
+//! The stages of a frame and of its substeps: the page to read first.
 
-/// One stage of a substep. A scene runs only those it needs, in this order.
+/// One stage. A scene runs only the stages it needs, in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[non_exhaustive]
 pub enum Stage {
-    /// Emitters move their rows, let particles go and add new ones.
+    /// Once per frame, at its start: removes particles past their lifetime or outside the domain.
+    Remove,
+    /// Emitters move their rows, release particles and add new ones.
     Emit,
-    /// Velocities take up the body forces, positions are predicted.
+    /// Applies body forces to the velocities and predicts the positions.
     Predict,
-    /// A grid takes the smooth part of the pressure.
-    CoarseProjection,
-    /// Bodies are predicted; their contacts and joints are found and solved once; samples follow.
+    /// Projects the velocities on a grid, which carries the smooth part of the pressure.
+    PressureGrid,
+    /// Adds the forces of the grid's pressure on the measured walls.
+    GridWallForces,
+    /// Predicts the bodies, finds their contacts and solves contacts and joints once.
     Contacts,
-    /// The neighbour list is made valid for the predicted positions.
+    /// Wakes the liquid around bodies that were woken.
+    WakeAroundBodies,
+    /// Moves the samples of bodies to the predicted poses.
+    PlaceSamples,
+    /// Makes the neighbour list valid for the predicted positions.
     FindNeighbors,
     /// Constraint groups prepare for the substep.
     BeginGroups,
-    /// Constraint groups move particles, one after the other, each from one state.
+    /// Constraint groups move particles, one after the other, each from one state; after each of them
+    /// the steps of [`CorrectionStep`] run.
     Project,
-    /// Contacts and joints are solved again, now that the fluid has pushed the bodies.
+    /// Without groups: keeps particles out of walls, by the same steps.
+    KeepOutOfWalls,
+    /// Stores the density errors and multipliers by particle.
+    StoreDensity,
+    /// In the last substep of a frame: adds the pressure of the grid to the multipliers, which are read as pressures.
+    AddGridPressure,
+    /// Solves contacts and joints again, after the fluid has pushed the bodies.
     ContactsAgain,
     /// Velocities follow from the displacements.
     UpdateVelocities,
-    /// Bodies take up pose and velocity, rebound, and are moved out of each other.
+    /// Sets pose and velocity of bodies, applies restitution, removes overlap.
     MoveBodies,
+    /// Moves the samples of bodies to their poses.
+    SettleSamples,
     /// Groups that asked for it change the velocities.
     FinishGroups,
+    /// Makes the neighbour list valid for the projected positions, for effects and smoke.
+    RefreshNeighbors,
     /// Viscosity, drag, vorticity, heat.
     Effects,
     /// Smoke moves with its carrier.
     AdvectSmoke,
-    /// Once per frame, at its end, where liquids may: what is at rest falls asleep, what is disturbed wakes.
+    /// Once per frame, at its end: liquid at rest falls asleep, disturbed liquid wakes.
     Sleep,
+    /// Once per frame, at its end: the bodies' forces, sleep and poses of bodies made of particles.
+    FinishBodies,
 }
 
 impl Stage {
     /// The name under which the stage is timed and shown.
     pub const fn name(self) -> &'static str {
         match self {
+            Stage::Remove => "remove",
             Stage::Emit => "emit",
             Stage::Predict => "predict",
-            Stage::CoarseProjection => "coarse_projection",
+            Stage::PressureGrid => "pressure_grid",
+            Stage::GridWallForces => "grid_wall_forces",
             Stage::Contacts => "contacts",
+            Stage::WakeAroundBodies => "wake_around_bodies",
+            Stage::PlaceSamples => "place_samples",
             Stage::FindNeighbors => "find_neighbors",
             Stage::BeginGroups => "begin_groups",
             Stage::Project => "project",
+            Stage::KeepOutOfWalls => "keep_out_of_walls",
+            Stage::StoreDensity => "store_density",
+            Stage::AddGridPressure => "add_grid_pressure",
             Stage::ContactsAgain => "contacts_again",
             Stage::UpdateVelocities => "update_velocities",
             Stage::MoveBodies => "move_bodies",
+            Stage::SettleSamples => "settle_samples",
             Stage::FinishGroups => "finish_groups",
+            Stage::RefreshNeighbors => "refresh_neighbors",
             Stage::Effects => "effects",
             Stage::AdvectSmoke => "advect_smoke",
             Stage::Sleep => "sleep",
+            Stage::FinishBodies => "finish_bodies",
         }
     }
 }
 
-/// What decides which stages a scene runs.
+/// One step of applying the corrections of a group, in this order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum CorrectionStep {
+    /// Moves that velocities do not follow.
+    Shift,
+    /// Forces on the measured walls, from the corrections and from the particles that meet a wall.
+    LoadWalls,
+    /// Displacements; particles are kept out of walls.
+    Displace,
+    /// Forces of the fluid on the bodies.
+    LoadBodies,
+    /// Fluid particles are pushed out of the bodies.
+    PushOut,
+}
+
+/// The properties of a scene that decide which stages run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Features {
+    pub removal: bool,
     pub emitters: bool,
-    pub coarse: bool,
+    pub pressure_grid: bool,
     pub bodies: bool,
+    /// Particles move with bodies: their samples, or ends of ropes.
+    pub samples: bool,
+    pub sleep: bool,
     pub neighbors: bool,
     pub groups: bool,
-    /// Groups, or walls that anything can run into.
-    pub projection: bool,
+    pub density: bool,
+    pub walls: bool,
+    pub measured_walls: bool,
     pub velocity_passes: bool,
     pub effects: bool,
     pub smoke: bool,
 }
 
-/// The stages of a substep with these features. Decided when a scene is built or changed, not asked
-/// per particle and step: what a scene does not use is not in its list.
-pub(super) fn pipeline(features: Features) -> Vec<Stage> {
-    let stages = [
-        (Stage::Emit, features.emitters),
-        (Stage::Predict, true),
-        (Stage::CoarseProjection, features.coarse),
-        (Stage::Contacts, features.bodies),
-        (Stage::FindNeighbors, features.neighbors),
-        (Stage::BeginGroups, features.groups),
-        (Stage::Project, features.projection),
-        (Stage::ContactsAgain, features.bodies),
-        (Stage::UpdateVelocities, true),
-        (Stage::MoveBodies, features.bodies),
-        (Stage::FinishGroups, features.velocity_passes),
-        (Stage::Effects, features.effects),
-        (Stage::AdvectSmoke, features.smoke),
-    ];
-    stages.into_iter().filter_map(|(stage, needed)| needed.then_some(stage)).collect()
+/// The stages of a scene.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Plan {
+    /// At the start of a frame.
+    pub begin: Vec<Stage>,
+    /// In each substep.
+    pub substep: Vec<Stage>,
+    /// At the end of a frame.
+    pub end: Vec<Stage>,
+    /// After each group of each iteration.
+    pub corrections: Vec<CorrectionStep>,
+}
+
+impl Plan {
+    /// Selects the stages. Called when a scene is built or changed, never within a step.
+    pub fn new(with: Features) -> Plan {
+        Plan {
+            begin: needed([(Stage::Remove, with.removal)]),
+            substep: needed([
+                (Stage::Emit, with.emitters),
+                (Stage::Predict, true),
+                (Stage::PressureGrid, with.pressure_grid),
+                (Stage::GridWallForces, with.pressure_grid && with.measured_walls),
+                (Stage::Contacts, with.bodies),
+                (Stage::WakeAroundBodies, with.bodies && with.sleep),
+                (Stage::PlaceSamples, with.samples),
+                (Stage::FindNeighbors, with.neighbors),
+                (Stage::BeginGroups, with.groups),
+                (Stage::Project, with.groups),
+                (Stage::KeepOutOfWalls, with.walls && !with.groups),
+                (Stage::StoreDensity, with.density),
+                (Stage::AddGridPressure, with.pressure_grid),
+                (Stage::ContactsAgain, with.bodies),
+                (Stage::UpdateVelocities, true),
+                (Stage::MoveBodies, with.bodies),
+                (Stage::SettleSamples, with.samples),
+                (Stage::FinishGroups, with.velocity_passes),
+                (Stage::RefreshNeighbors, with.neighbors && (with.effects || with.smoke)),
+                (Stage::Effects, with.effects),
+                (Stage::AdvectSmoke, with.smoke),
+            ]),
+            end: needed([(Stage::Sleep, with.sleep), (Stage::FinishBodies, with.bodies)]),
+            corrections: needed([
+                (CorrectionStep::Shift, true),
+                (CorrectionStep::LoadWalls, with.measured_walls),
+                (CorrectionStep::Displace, true),
+                (CorrectionStep::LoadBodies, with.samples),
+                (CorrectionStep::PushOut, with.samples && with.neighbors),
+            ]),
+        }
+    }
+
+    /// Whether the scene keeps a neighbour list.
+    pub fn has_neighbors(&self) -> bool {
+        self.substep.contains(&Stage::FindNeighbors)
+    }
+}
+
+fn needed<T, const N: usize>(steps: [(T, bool); N]) -> Vec<T> {
+    steps.into_iter().filter_map(|(step, needed)| needed.then_some(step)).collect()
 }

@@ -1,20 +1,11 @@
 //! Liquids that sleep, as the loop sees them.
 
-use super::Stage;
 use super::world::{Parts, World};
 use crate::math::{Real, Vector};
 use crate::rows::RowIndex;
 use crate::sleep::LiquidSleep;
 
 impl World {
-    /// Ends a frame, where liquids may sleep.
-    pub(super) fn fall_asleep(&mut self) {
-        if self.parts.sleep.is_some() {
-            // This stage never fails.
-            let _ = self.run_timed(Stage::Sleep);
-        }
-    }
-
     pub(super) fn decide_sleep(&mut self) {
         self.rearrange(|sleep, parts| {
             let rigid = parts.rigid.as_ref();
@@ -109,7 +100,7 @@ impl World {
         // Between two frames anybody may ask for neighbours.
         if self.clock.done == 0 || self.clock.done == self.clock.substeps {
             self.parts.particles.start_here();
-            self.find_neighbors();
+            self.find_neighbors(self.parts.search_positions);
         }
     }
 }

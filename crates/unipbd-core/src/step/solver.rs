@@ -66,7 +66,7 @@ impl Solver {
         &mut self,
         mut hook: impl FnMut(&mut SubstepView<'_>) -> Result<(), E>,
     ) -> Result<FrameReport, E> {
-        let begun = self.on_threads(World::begin_frame);
+        let begun = self.on_threads(World::begin_frame)?;
         while self.world.begin_substep() {
             self.world.hooked = self.world.parts.particles.asleep() > 0;
             if let Err(error) = hook(&mut SubstepView::new(&mut self.world)) {
@@ -75,7 +75,7 @@ impl Solver {
             }
             self.on_threads(World::finish_substep)?;
         }
-        Ok(self.on_threads(|world| world.end_frame(begun)))
+        Ok(self.on_threads(|world| world.end_frame(begun))?)
     }
 
     /// Projects the start without gravity until it is at rest density.
@@ -88,12 +88,12 @@ impl Solver {
         // It may move what sleeps.
         self.on_threads(World::wake_for_good);
         self.world.parts.groups.push(group);
-        self.world.plan();
+        self.world.replan();
     }
 
     /// The stages of a substep of this scene, in order.
     pub fn stages(&self) -> &[Stage] {
-        &self.world.stages
+        &self.world.plan.substep
     }
 
     /// Threads in use. Never changes results.

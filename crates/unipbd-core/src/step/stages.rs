@@ -1,12 +1,13 @@
-//! What each stage does.
+//! The work of each stage.
 
 use super::integrate;
+use super::pipeline::CorrectionStep;
 use super::world::World;
 use super::{SolverError, Stage};
-use crate::constraints::ConstraintGroup;
+use crate::constraints::{ConstraintGroup, DensityGroup};
 use crate::effects::Advected;
 use crate::math::{Real, wide};
-use crate::neighbors::Prepared;
+use crate::neighbors::{Prepared, SearchPositions};
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
 
@@ -17,11 +18,7 @@ impl World {
     /// One substep: the stages, in order.
     pub(super) fn substep(&mut self) -> Result<(), SolverError> {
         self.stepped += (self.parts.particles.len() - self.parts.particles.asleep()) as u64;
-        for index in 0..self.stages.len() {
-            let stage = self.stages[index];
-            self.run_timed(stage)?;
-        }
-        Ok(())
+        (0..self.plan.substep.len()).try_for_each(|index| self.run_timed(self.plan.substep[index]))
     }
 
     pub(super) fn run_timed(&mut self, stage: Stage) -> Result<(), SolverError> {
@@ -31,22 +28,32 @@ impl World {
         done
     }
 
-    fn run(&mut self, stage: Stage) -> Result<(), SolverError> {
+    pub(super) fn run(&mut self, stage: Stage) -> Result<(), SolverError> {
         match stage {
+            Stage::Remove => self.remove(),
             Stage::Emit => self.emit(),
             Stage::Predict => self.predict(),
-            Stage::CoarseProjection => self.project_coarsely(),
+            Stage::PressureGrid => self.project_on_grid(),
+            Stage::GridWallForces => self.add_grid_wall_forces(),
             Stage::Contacts => self.predict_bodies(),
-            Stage::FindNeighbors => self.find_neighbors(),
+            Stage::WakeAroundBodies => self.wake_around_bodies(),
+            Stage::PlaceSamples => self.place_samples(),
+            Stage::FindNeighbors => self.find_neighbors(self.parts.search_positions),
             Stage::BeginGroups => self.begin_groups(),
             Stage::Project => self.project(),
+            Stage::KeepOutOfWalls => self.keep_out_of_walls(),
+            Stage::StoreDensity => self.store_density(),
+            Stage::AddGridPressure => self.add_grid_pressure(),
             Stage::ContactsAgain => self.iterate_contacts(),
             Stage::UpdateVelocities => return self.update_velocities(),
             Stage::MoveBodies => self.move_bodies(),
+            Stage::SettleSamples => self.settle_samples(),
             Stage::FinishGroups => self.finish_groups(),
+            Stage::RefreshNeighbors => self.find_neighbors(SearchPositions::Predicted),
             Stage::Effects => self.apply_effects(),
             Stage::AdvectSmoke => self.advect_smoke(),
             Stage::Sleep => self.decide_sleep(),
+            Stage::FinishBodies => self.finish_bodies(),
         }
         Ok(())
     }
@@ -68,22 +75,24 @@ impl World {
         parts.particles.clear_accelerations();
     }
 
-    fn project_coarsely(&mut self) {
+    fn project_on_grid(&mut self) {
         let parts = &mut self.parts;
-        let Some(coarse) = &mut parts.coarse else { return };
-        coarse.project(&mut parts.particles, &parts.walls, self.clock.dt as Real, parts.parallelism);
-        if !self.wall_impulses.is_empty() {
-            coarse.push_walls(&parts.particles, &parts.walls, &mut self.wall_impulses);
-        }
+        let Some(grid) = &mut parts.pressure_grid else { return };
+        grid.project(&mut parts.particles, &parts.walls, self.clock.dt as Real, parts.parallelism);
     }
 
-    /// Adds the pressure of the grid to the multipliers that are read as pressures: once per frame, at its end.
-    fn add_coarse_pressure(&mut self) {
+    fn add_grid_wall_forces(&mut self) {
+        let parts = &self.parts;
+        let Some(grid) = &parts.pressure_grid else { return };
+        grid.push_walls(&parts.particles, &parts.walls, &mut self.wall_impulses);
+    }
+
+    fn add_grid_pressure(&mut self) {
         let parts = &mut self.parts;
         let last = self.clock.done + 1 == self.clock.substeps;
-        if let Some(coarse) = parts.coarse.as_ref().filter(|_| last) {
+        if let Some(grid) = parts.pressure_grid.as_ref().filter(|_| last) {
             let per_pressure = self.clock.dt * self.clock.dt / parts.pressure_scale;
-            coarse.add_pressure(&mut parts.particles, self.clock.dt as Real, per_pressure as Real, parts.parallelism);
+            grid.add_pressure(&mut parts.particles, self.clock.dt as Real, per_pressure as Real, parts.parallelism);
         }
     }
 
@@ -92,7 +101,9 @@ impl World {
         let Some(rigid) = &mut parts.rigid else { return };
         rigid.predict(self.clock.dt, self.clock.time, wide(parts.gravity));
         rigid.iterate_contacts();
-        self.wake_around_bodies();
+    }
+
+    fn place_samples(&mut self) {
         let parts = &mut self.parts;
         let Some(rigid) = &mut parts.rigid else { return };
         rigid.place_samples(&mut parts.particles, &self.rows);
@@ -107,14 +118,33 @@ impl World {
         let parts = &mut self.parts;
         let Some(rigid) = &mut parts.rigid else { return };
         rigid.integrate(self.clock.dt);
+    }
+
+    fn settle_samples(&mut self) {
+        let parts = &mut self.parts;
+        let Some(rigid) = &mut parts.rigid else { return };
         rigid.settle_samples(&mut parts.particles, &self.rows);
     }
 
-    pub(super) fn find_neighbors(&mut self) {
+    fn finish_bodies(&mut self) {
+        let Some(rigid) = &mut self.parts.rigid else { return };
+        rigid.follow_particles(&self.parts.particles, &self.rows);
+        rigid.finish_frame(self.parts.frame_time);
+    }
+
+    /// Makes the neighbour list valid for these positions.
+    pub(super) fn find_neighbors(&mut self, at: SearchPositions) {
         let parts = &mut self.parts;
-        let prepared = parts.neighbors.prepare(&mut parts.particles, parts.search_positions, parts.parallelism);
+        let prepared = parts.neighbors.prepare(&mut parts.particles, at, parts.parallelism);
         if prepared == Prepared::Rebuilt {
             self.index_rows();
+        }
+    }
+
+    /// Makes the list of a scene that keeps one valid outside of a substep.
+    pub(super) fn find_neighbors_if_listed(&mut self) {
+        if self.plan.has_neighbors() {
+            self.find_neighbors(self.parts.search_positions);
         }
     }
 
@@ -126,10 +156,6 @@ impl World {
     }
 
     fn project(&mut self) {
-        if self.parts.groups.is_empty() {
-            self.reset_corrections();
-            self.apply_corrections();
-        }
         let mut groups = std::mem::take(&mut self.parts.groups);
         for _ in 0..self.parts.iterations {
             for group in &mut groups {
@@ -144,48 +170,67 @@ impl World {
                 break;
             }
         }
-        for columns in groups.iter().filter_map(|group| group.density()) {
-            let particles = &mut self.parts.particles;
+        self.parts.groups = groups;
+    }
+
+    fn keep_out_of_walls(&mut self) {
+        self.reset_corrections();
+        self.apply_corrections();
+    }
+
+    fn store_density(&mut self) {
+        let particles = &mut self.parts.particles;
+        for columns in self.parts.groups.iter().filter_map(|group| group.as_density()).map(DensityGroup::columns) {
             particles.density_error[..columns.error.len()].copy_from_slice(columns.error);
             particles.multiplier[..columns.multiplier.len()].copy_from_slice(columns.multiplier);
         }
-        self.add_coarse_pressure();
-        self.parts.groups = groups;
     }
 
     fn reset_corrections(&mut self) {
         let particles = &self.parts.particles;
-        let samples = if self.parts.rigid.is_some() { particles.listed() } else { 0 };
-        let walls = self.parts.walls.measured().len();
-        self.corrections.reset(particles.len(), particles.listed_bands(), samples, walls);
+        self.corrections.reset(particles.len(), particles.listed_bands(), particles.listed());
     }
 
     fn apply_corrections(&mut self) {
-        if self.parts.coarse.is_some() {
-            self.corrections.note_moved();
-        }
-        integrate::shift(&mut self.parts.particles, &self.corrections, self.parts.parallelism);
-        self.measure_walls();
-        let parts = &mut self.parts;
-        integrate::apply(&mut parts.particles, &self.corrections, &parts.walls, parts.parallelism);
-        if let Some(rigid) = &mut parts.rigid {
-            rigid.take_loads(self.corrections.loads(), &parts.particles, &self.rows, self.clock.dt);
-            if self.stages.contains(&Stage::FindNeighbors) {
-                rigid.push_out(&mut parts.particles, &parts.neighbors, &parts.walls, &self.rows, self.clock.dt);
+        for index in 0..self.plan.corrections.len() {
+            match self.plan.corrections[index] {
+                CorrectionStep::Shift => self.shift(),
+                CorrectionStep::LoadWalls => self.load_walls(),
+                CorrectionStep::Displace => self.displace(),
+                CorrectionStep::LoadBodies => self.load_bodies(),
+                CorrectionStep::PushOut => self.push_out(),
             }
         }
     }
 
-    /// Adds what the corrections and the walls themselves push, where a scene measures it.
-    fn measure_walls(&mut self) {
-        if self.corrections.wall_loads().is_empty() {
-            return;
-        }
+    fn shift(&mut self) {
+        integrate::shift(&mut self.parts.particles, &self.corrections, self.parts.parallelism);
+    }
+
+    /// Adds the forces of the corrections, and of the walls themselves, to the measured walls.
+    fn load_walls(&mut self) {
         integrate::load_walls(&self.parts.particles, &mut self.corrections, &self.parts.walls);
         let inverse_dt = 1.0 / self.clock.dt;
         for (impulse, load) in self.wall_impulses.iter_mut().zip(self.corrections.wall_loads()) {
             *impulse += *load * inverse_dt;
         }
+    }
+
+    fn displace(&mut self) {
+        let parts = &mut self.parts;
+        integrate::apply(&mut parts.particles, &self.corrections, &parts.walls, parts.parallelism);
+    }
+
+    fn load_bodies(&mut self) {
+        let parts = &mut self.parts;
+        let Some(rigid) = &mut parts.rigid else { return };
+        rigid.take_loads(self.corrections.loads(), &parts.particles, &self.rows, self.clock.dt);
+    }
+
+    fn push_out(&mut self) {
+        let parts = &mut self.parts;
+        let Some(rigid) = &mut parts.rigid else { return };
+        rigid.push_out(&mut parts.particles, &parts.neighbors, &parts.walls, &self.rows, self.clock.dt);
     }
 
     fn update_velocities(&mut self) -> Result<(), SolverError> {
@@ -232,17 +277,13 @@ impl World {
         self.parts.groups = groups;
     }
 
-    /// Effects see the projected positions: the list is checked once more for them.
     fn apply_effects(&mut self) {
-        if self.stages.contains(&Stage::FindNeighbors) {
-            self.refresh_neighbors();
-        }
         let mut effects = std::mem::take(&mut self.parts.effects);
         for effect in &mut effects {
             let temperatures = !self.parts.particles.temperature.is_empty();
             self.changes.reset(self.parts.particles.listed(), temperatures);
             effect.apply(World::now(&self.parts, &self.rows, &self.clock), &mut self.changes);
-            self.take_up_changes();
+            self.apply_changes();
             self.note_cut(effect.name(), effect.stable_fraction());
         }
         self.parts.effects = effects;
@@ -263,7 +304,7 @@ impl World {
         self.choice.wanted = self.choice.wanted.max(wanted);
     }
 
-    fn take_up_changes(&mut self) {
+    fn apply_changes(&mut self) {
         let awake = self.parts.particles.awake();
         let particles = &mut self.parts.particles;
         let (changes, inverse_masses) = (&self.changes, &particles.inverse_mass);
@@ -280,48 +321,17 @@ impl World {
         });
     }
 
-    /// Makes the list hold for the positions as they are now.
-    fn refresh_neighbors(&mut self) {
-        let parts = &mut self.parts;
-        let prepared = parts.neighbors.prepare(
-            &mut parts.particles,
-            crate::neighbors::SearchPositions::Predicted,
-            parts.parallelism,
-        );
-        if prepared == Prepared::Rebuilt {
-            self.index_rows();
-        }
-    }
-
     fn advect_smoke(&mut self) {
-        if self.parts.effects.is_empty() {
-            self.refresh_neighbors();
-        }
         let Some(mut smoke) = self.parts.smoke.take() else { return };
         let advected = smoke.advect(World::now(&self.parts, &self.rows, &self.clock));
-        take_up_smoke(&mut self.parts.particles, advected, self.parts.parallelism);
+        move_smoke(&mut self.parts.particles, advected, self.parts.parallelism);
         smoke.set_last_dt(self.clock.dt as Real);
         self.parts.smoke = Some(smoke);
     }
-
-    /// One projection without forces, and how far it moved any particle [m]. A part of it goes on in the next one.
-    pub(super) fn relax_once(&mut self) -> f64 {
-        integrate::hold(&mut self.parts.particles, self.parts.parallelism);
-        if self.stages.contains(&Stage::FindNeighbors) {
-            self.find_neighbors();
-        }
-        let carried = integrate::take_carried(&mut self.parts.particles);
-        self.begin_groups();
-        self.project();
-        integrate::carry_remainders(&mut self.parts.particles, self.parts.parallelism);
-        let farthest = integrate::carry_momentum(&mut self.parts.particles, &carried);
-        integrate::wrap(&mut self.parts.particles, self.parts.neighbors.periodic(), self.parts.parallelism);
-        farthest
-    }
 }
 
-/// Smoke takes up where it went; its displacement keeps the velocity of one substep ago.
-fn take_up_smoke(particles: &mut Particles, advected: &[Advected], parallelism: Parallelism) {
+/// Moves smoke to its advected positions; its displacement column keeps the velocity of one substep ago.
+fn move_smoke(particles: &mut Particles, advected: &[Advected], parallelism: Parallelism) {
     let dense = particles.dense();
     let phase = &particles.phase[dense..];
     let (position, start) = (&mut particles.position[dense..], &mut particles.start[dense..]);

@@ -3,12 +3,12 @@
 use crate::bytes::held;
 use std::sync::OnceLock;
 
-use super::integrate::{self, BodyForce};
-use super::pipeline::{Features, pipeline};
+use super::integrate::BodyForce;
+use super::pipeline::{Features, Plan};
 use super::substeps::{Choice, SubstepRule};
 use super::timings::Timings;
 use super::{FrameReport, SolverError, Stage};
-use crate::constraints::{ConstraintGroup, Corrections, Needs, Substep};
+use crate::constraints::{ConstraintGroup, CorrectionParts, Corrections, Needs, Substep};
 use crate::coupling::RigidBodies;
 use crate::effects::{Changes, Effect, SmokeAdvection};
 use crate::math::{Real, Vector, Vector64};
@@ -16,22 +16,13 @@ use crate::neighbors::{Neighbors, SavedList, SearchPositions};
 use crate::observe::{Event, Material};
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
-use crate::pressure_grid::CoarseProjection;
+use crate::pressure_grid::PressureGrid;
 use crate::rows::RowIndex;
 use crate::sleep::LiquidSleep;
 use crate::sources::{EmitterSystem, RemovalRules};
 use crate::walls::Walls;
 
-/// Settling ends where no particle moves farther than this many spacings in a substep.
-const SETTLED: f64 = 1e-5;
-/// Projections that settle any start...
-const SETTLING: f64 = 100.0;
-/// ...and those that each layer takes where the liquid is no wider than...
-const SETTLING_PER_LAYER: f64 = 3.0;
-/// ...this many spacings: walls make the rows beside them too dense, and a wider one hardly rises by that.
-const NARROW: f64 = 16.0;
-
-/// What a scene is made of, before the loop sees it.
+/// The parts of a scene that the loop works on.
 pub(crate) struct Parts {
     pub particles: Particles,
     pub materials: Vec<Material>,
@@ -39,7 +30,7 @@ pub(crate) struct Parts {
     pub walls: Walls,
     pub neighbors: Neighbors,
     pub search_positions: SearchPositions,
-    pub coarse: Option<CoarseProjection>,
+    pub pressure_grid: Option<PressureGrid>,
     pub groups: Vec<Box<dyn ConstraintGroup>>,
     pub effects: Vec<Box<dyn Effect>>,
     pub smoke: Option<SmokeAdvection>,
@@ -113,7 +104,7 @@ pub(crate) struct World {
     pub parts: Parts,
     pub rows: RowIndex,
     pub clock: Clock,
-    pub stages: Vec<Stage>,
+    pub(super) plan: Plan,
     pub events: Vec<Event>,
     pub timings: Timings,
     pub(super) measured: Measured,
@@ -145,7 +136,7 @@ impl World {
             parts,
             rows: RowIndex::default(),
             clock: Clock::default(),
-            stages: Vec::new(),
+            plan: Plan::default(),
             events: Vec::new(),
             timings: Timings::default(),
             measured: Measured::default(),
@@ -162,32 +153,43 @@ impl World {
             wall_impulses: Vec::new(),
             wall_forces: Vec::new(),
         };
-        world.forget_walls();
+        world.clear_wall_impulses();
         world.wall_forces.clone_from(&world.wall_impulses);
-        world.plan();
+        world.replan();
         world
     }
 
-    fn forget_walls(&mut self) {
+    fn clear_wall_impulses(&mut self) {
         self.wall_impulses.clear();
         self.wall_impulses.resize(self.parts.walls.measured().len(), Vector64::ZERO);
     }
 
-    /// Decides the stages: called when the scene is built or its groups change.
-    pub fn plan(&mut self) {
+    /// Selects the stages: called when the scene is built or its groups change.
+    pub fn replan(&mut self) {
         let parts = &self.parts;
         let needs = parts.groups.iter().map(|group| group.needs()).fold(Needs::NOTHING, |a, b| a | b);
         let of_effects = parts.effects.iter().map(|effect| effect.needs()).fold(Needs::NOTHING, |a, b| a | b);
-        self.stages = pipeline(Features {
+        let measured_walls = parts.walls.measured().len();
+        self.plan = Plan::new(Features {
+            removal: parts.removal.is_some(),
             emitters: parts.emitters.is_some(),
-            coarse: parts.coarse.is_some(),
+            pressure_grid: parts.pressure_grid.is_some(),
             bodies: parts.rigid.is_some(),
+            samples: parts.rigid.as_ref().is_some_and(RigidBodies::has_followers),
+            sleep: parts.sleep.is_some(),
             neighbors: parts.smoke.is_some() || (needs | of_effects).contains(Needs::NEIGHBORS),
             groups: !parts.groups.is_empty(),
-            projection: !parts.groups.is_empty() || !parts.walls.is_empty(),
+            density: parts.groups.iter().any(|group| group.as_density().is_some()),
+            walls: !parts.walls.is_empty(),
+            measured_walls: measured_walls > 0,
             velocity_passes: needs.contains(Needs::VELOCITY_PASS),
             effects: !parts.effects.is_empty(),
             smoke: parts.smoke.is_some(),
+        });
+        self.corrections.select(CorrectionParts {
+            loads: parts.rigid.is_some(),
+            grid_shifts: parts.pressure_grid.is_some(),
+            walls: measured_walls,
         });
         self.needs_rows = parts.emitters.is_some() || parts.rigid.is_some() || needs.contains(Needs::ROWS);
         self.index_rows();
@@ -212,29 +214,37 @@ impl World {
 
     /// One frame, or the rest of one that an error interrupted.
     pub fn frame(&mut self) -> Result<FrameReport, SolverError> {
-        let begun = self.begin_frame();
+        let begun = self.begin_frame()?;
         while self.begin_substep() {
             self.finish_substep()?;
         }
-        Ok(self.end_frame(begun))
+        self.end_frame(begun)
     }
 
-    /// Removes what is to go and decides how many substeps the frame takes.
-    pub fn begin_frame(&mut self) -> Begun {
+    /// Runs the stages that begin a frame and chooses the number of its substeps.
+    pub fn begin_frame(&mut self) -> Result<Begun, SolverError> {
         self.measured = Measured::default();
-        let mut removed = 0;
+        self.removed.clear();
         if self.clock.done == 0 {
-            removed = self.remove();
             (self.iterated, self.stepped) = (0, 0);
+            self.run_all(|plan| &plan.begin)?;
             if !self.sleeps() {
                 let before = self.clock.dt;
-                self.forget_walls();
+                self.clear_wall_impulses();
                 self.clock.substeps = self.choose_substeps();
                 self.clock.dt = self.parts.frame_time / f64::from(self.clock.substeps);
                 self.keep_pressure_asleep(before);
             }
         }
-        Begun { removed, ids: self.parts.particles.ids_given(), builds: self.parts.neighbors.builds() }
+        Ok(Begun {
+            removed: self.removed.len() as u64,
+            ids: self.parts.particles.ids_given(),
+            builds: self.parts.neighbors.builds(),
+        })
+    }
+
+    fn run_all(&mut self, stages: impl Fn(&Plan) -> &[Stage]) -> Result<(), SolverError> {
+        (0..stages(&self.plan).len()).try_for_each(|index| self.run_timed(stages(&self.plan)[index]))
     }
 
     /// Sets the clock to the next substep; false when the frame is done.
@@ -253,26 +263,22 @@ impl World {
         Ok(())
     }
 
-    /// Sets the clock to the end of the frame.
-    pub fn end_frame(&mut self, begun: Begun) -> FrameReport {
-        self.fall_asleep();
-        if let Some(rigid) = &mut self.parts.rigid {
-            rigid.follow_particles(&self.parts.particles, &self.rows);
-            rigid.finish_frame(self.parts.frame_time);
-        }
+    /// Runs the stages that end a frame and sets the clock to its end.
+    pub fn end_frame(&mut self, begun: Begun) -> Result<FrameReport, SolverError> {
+        self.run_all(|plan| &plan.end)?;
         let inverse = 1.0 / self.parts.frame_time;
         self.wall_forces = self.wall_impulses.iter().map(|impulse| *impulse * inverse).collect();
         self.clock.done = 0;
         self.clock.frame += 1;
         self.clock.time = self.clock.frame as f64 * self.parts.frame_time;
         self.clock.list_builds = (self.parts.neighbors.builds() - begun.builds) as u32;
-        FrameReport {
+        Ok(FrameReport {
             substeps: self.clock.substeps,
             list_builds: self.clock.list_builds,
             emitted: u64::from(self.parts.particles.ids_given() - begun.ids),
             removed: begun.removed,
             rows_stepped: self.stepped,
-        }
+        })
     }
 
     /// Makes the list of a saved state again, and forgets what was measured before.
@@ -293,34 +299,7 @@ impl World {
         }
         self.clock.speed = self.fastest();
         self.parts.particles.start_here();
-        if self.stages.contains(&Stage::FindNeighbors) {
-            self.find_neighbors();
-        }
-    }
-
-    /// Brings the start to its rest density: projection without gravity and without velocity.
-    pub fn settle(&mut self, substeps: Option<u32>) {
-        let substeps = substeps.unwrap_or_else(|| self.settling());
-        self.clock.dt = self.parts.frame_time;
-        self.clock.pressure_limit = self.pressure_limit();
-        self.clock.stiffness = 1.0;
-        if self.parts.particles.dense() > 0 {
-            // Once nothing moves any more, nothing will.
-            let still = SETTLED * self.parts.spacing;
-            (0..substeps).find(|_| self.relax_once() <= still);
-            integrate::zero_displacements(&mut self.parts.particles);
-        }
-        // The start can be observed like any other moment.
-        if self.stages.contains(&Stage::FindNeighbors) {
-            self.find_neighbors();
-        }
-        self.clock = Clock { generation: self.clock.generation, ..Clock::default() };
-    }
-
-    /// Projections that bring the start to its rest density, if nothing is said about them.
-    fn settling(&self) -> u32 {
-        let [width, layers] = self.extent().map(|extent| extent / self.parts.spacing);
-        (SETTLING_PER_LAYER * layers * (NARROW / width).min(1.0)).max(SETTLING) as u32
+        self.find_neighbors_if_listed();
     }
 
     /// This moment as groups and effects see it.
@@ -343,21 +322,20 @@ impl World {
         let shared = parts.particles.memory_bytes() + parts.neighbors.memory_bytes() + self.rows.memory_bytes();
         let groups = parts.groups.iter().map(|group| group.memory_bytes()).sum::<usize>();
         let effects = parts.effects.iter().map(|effect| effect.memory_bytes()).sum::<usize>();
-        let coarse = parts.coarse.as_ref().map_or(0, CoarseProjection::memory_bytes);
-        let room = coarse + self.corrections.memory_bytes() + self.changes.memory_bytes() + held(&self.velocities);
+        let grid = parts.pressure_grid.as_ref().map_or(0, PressureGrid::memory_bytes);
+        let room = grid + self.corrections.memory_bytes() + self.changes.memory_bytes() + held(&self.velocities);
         shared + groups + effects + room
     }
 
-    fn remove(&mut self) -> u64 {
-        let Some(rules) = &mut self.parts.removal else { return 0 };
+    /// Removes the particles that the rules of the scene name.
+    pub(super) fn remove(&mut self) {
+        let Some(rules) = &mut self.parts.removal else { return };
         rules.find(&self.parts.particles, self.clock.time, self.parts.parallelism, &mut self.removed);
-        if self.removed.is_empty() {
-            return 0;
+        if !self.removed.is_empty() {
+            let places = self.places(&self.removed);
+            self.parts.particles.remove_rows(&self.removed);
+            self.population_changed();
+            self.wake_near(&places);
         }
-        let places = self.places(&self.removed);
-        self.parts.particles.remove_rows(&self.removed);
-        self.population_changed();
-        self.wake_near(&places);
-        self.removed.len() as u64
     }
 }

@@ -12,7 +12,7 @@ mod solve;
 
 pub use settings::{DensityMaterial, DensitySettings};
 
-use super::{ConstraintGroup, Corrections, DensityColumns, Needs, Substep};
+use super::{ConstraintGroup, Corrections, DensityColumns, DensityGroup, Needs, Substep};
 use crate::bytes::held;
 use crate::kernel::Kernel;
 use crate::math::{Real, Vector};
@@ -132,8 +132,18 @@ impl ConstraintGroup for Density {
         Some(f64::from(worst))
     }
 
-    fn measure_density(&self, now: Substep<'_>) -> Option<Vec<Real>> {
-        Some(self.measure(now))
+    fn as_density(&self) -> Option<&dyn DensityGroup> {
+        Some(self)
+    }
+}
+
+impl DensityGroup for Density {
+    fn columns(&self) -> DensityColumns<'_> {
+        DensityColumns { error: &self.error, multiplier: &self.multiplier }
+    }
+
+    fn measure_density(&self, now: Substep<'_>) -> Vec<Real> {
+        self.measure(now)
     }
 
     fn measure_pressure(&self, now: Substep<'_>) -> Option<Vec<Real>> {
@@ -142,9 +152,5 @@ impl ConstraintGroup for Density {
 
     fn measure_pressure_max(&self, now: Substep<'_>) -> Option<Real> {
         Some(self.read_largest_pressure(now))
-    }
-
-    fn density(&self) -> Option<DensityColumns<'_>> {
-        Some(DensityColumns { error: &self.error, multiplier: &self.multiplier })
     }
 }

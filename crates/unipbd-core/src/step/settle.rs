@@ -1,0 +1,111 @@
+//! Settling: brings the start of a run to its rest density, without gravity and without velocities.
+//!
+//! Each projection starts with a part of the last one's way, as long as it is pushed the same way (a momentum method):
+//! a push through a deep liquid then takes as many projections as the liquid has layers, not their square.
+
+use super::integrate;
+use super::pipeline::Stage;
+use super::world::{Clock, World};
+use crate::math::{Real, Vector, larger};
+use crate::parallel::Parallelism;
+use crate::particles::{Particles, displaced};
+use crate::phase::Phase;
+
+/// Settling ends when no particle moves farther than this many spacings in one projection.
+const SETTLED: f64 = 1e-5;
+/// Projections that settle a shallow start (measured on columns of 10 to 30 layers).
+const PROJECTIONS: f64 = 100.0;
+/// Projections per layer of a liquid that is at most [`NARROW`] wide.
+const PROJECTIONS_PER_LAYER: f64 = 3.0;
+/// Width up to which walls make a whole column rise [spacings]: they make the rows beside them too dense.
+const NARROW: f64 = 16.0;
+/// Part of a displacement that the next projection starts with.
+const MOMENTUM: Real = 0.9;
+/// The stages of a substep that a projection runs.
+const PROJECTION: [Stage; 4] = [Stage::BeginGroups, Stage::Project, Stage::KeepOutOfWalls, Stage::StoreDensity];
+
+impl World {
+    /// Brings the start to its rest density. `projections` is their largest number; left out, it follows from the
+    /// size of the liquid.
+    pub fn settle(&mut self, projections: Option<u32>) {
+        let projections = projections.unwrap_or_else(|| self.projections_to_settle());
+        self.clock.dt = self.parts.frame_time;
+        self.clock.pressure_limit = self.pressure_limit();
+        self.clock.stiffness = 1.0;
+        if self.parts.particles.dense() > 0 {
+            let still = SETTLED * self.parts.spacing;
+            (0..projections).find(|_| self.relax_once() <= still);
+            zero_displacements(&mut self.parts.particles);
+        }
+        // The start can be observed like any other moment.
+        self.find_neighbors_if_listed();
+        self.clock = Clock { generation: self.clock.generation, ..Clock::default() };
+    }
+
+    fn projections_to_settle(&self) -> u32 {
+        let [width, layers] = self.extent().map(|extent| extent / self.parts.spacing);
+        (PROJECTIONS_PER_LAYER * layers * (NARROW / width).min(1.0)).max(PROJECTIONS) as u32
+    }
+
+    /// Runs one projection and returns how far it moved any particle [m].
+    fn relax_once(&mut self) -> f64 {
+        start_projection(&mut self.parts.particles, self.parts.parallelism);
+        self.find_neighbors_if_listed();
+        let carried = take_carried(&mut self.parts.particles);
+        for index in 0..self.plan.substep.len() {
+            let stage = self.plan.substep[index];
+            if PROJECTION.contains(&stage) {
+                // None of these stages fails.
+                let _ = self.run(stage);
+            }
+        }
+        integrate::carry_remainders(&mut self.parts.particles, self.parts.parallelism);
+        let farthest = carry_momentum(&mut self.parts.particles, &carried);
+        integrate::wrap(&mut self.parts.particles, self.parts.neighbors.periodic(), self.parts.parallelism);
+        farthest
+    }
+}
+
+/// Moves particles on by the part of their last way that [`carry_momentum`] kept. The column of displacements holds it
+/// until [`take_carried`].
+fn start_projection(particles: &mut Particles, parallelism: Parallelism) {
+    particles.start.copy_from_slice(&particles.position);
+    for (row, phase) in particles.phase.iter().enumerate() {
+        if *phase != Phase::Smoke {
+            particles.position[row] =
+                displaced(particles.start[row], particles.displacement[row], particles.remainder[row]);
+        }
+    }
+    integrate::carry_remainders(particles, parallelism);
+    particles.start.copy_from_slice(&particles.position);
+}
+
+/// Takes the displacements out of their column, which from here on holds those of the projection.
+fn take_carried(particles: &mut Particles) -> Vec<Vector> {
+    let carried = particles.displacement.clone();
+    zero_displacements(particles);
+    carried
+}
+
+/// Keeps a part of the way of a projection for the next one, where its push points the same way. Returns the longest
+/// way [m].
+fn carry_momentum(particles: &mut Particles, carried: &[Vector]) -> f64 {
+    let mut farthest: Real = 0.0;
+    for ((displacement, phase), carried) in particles.displacement.iter_mut().zip(&particles.phase).zip(carried) {
+        if *phase != Phase::Smoke {
+            let way = *carried + *displacement;
+            farthest = larger(way.length_squared(), farthest);
+            let pushed = displacement.dot(way) > 0.0;
+            *displacement = if pushed { way * MOMENTUM } else { Vector::ZERO };
+        }
+    }
+    f64::from(farthest).sqrt()
+}
+
+fn zero_displacements(particles: &mut Particles) {
+    for (displacement, phase) in particles.displacement.iter_mut().zip(&particles.phase) {
+        if *phase != Phase::Smoke {
+            *displacement = Vector::ZERO;
+        }
+    }
+}
