@@ -51,7 +51,12 @@ part documentation env RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-dep
 part "Rust tests" cargo test --workspace --no-fail-fast
 if [ -n "$full" ]; then
     part "long Rust tests" cargo test --workspace --no-fail-fast --release -- --include-ignored
-    part "peers build" cargo check --quiet --manifest-path benches/peers/Cargo.toml --target-dir target/peers
+    part "peers build" cargo test --quiet --manifest-path benches/peers/Cargo.toml --target-dir target/peers
+    if command -v valgrind >/dev/null; then
+        part instructions python3 benches/python/instructions.py --check
+    else
+        skip instructions "no valgrind here"
+    fi
 fi
 if command -v python3 >/dev/null; then
     part logs logs

@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
-# unipbd beside salva2d, rapier2d (Rust registry), SPlisHSPlasH and taichi's pbf2d (Python registry), in one run.
-# Writes docs/peers.md and docs/images/peers.svg. What cannot be had is skipped, and the table says so.
+# unipbd beside salva2d, rapier2d, Box2D (Rust registry), SPlisHSPlasH and taichi's pbf2d (Python registry), in one run.
+# Renews the sections of docs/peers.md that it measures, and the pictures of liquids. A solver that cannot be had,
+# breaks, or does not use the settings it was given makes the command fail.
 #
-#   benches/peers.sh [--particles 5000,20000] [--seconds 2] [--bodies 5000] [--rows 100] [--only liquids|bodies]
+#   benches/peers.sh [--only liquids|bodies] [--particles 5000,20000] [--seconds 2] [--radius 3,2] [--coarse no,yes]
+#                    [--peers dfsph,salva,taichi,pbf] [--bodies 5000] [--settle 3] [--substeps 4x1,3x2] [--rows 100]
 set -u
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
 
@@ -19,8 +21,12 @@ fi
 library=$(ldconfig -p 2>/dev/null | grep -o '/.*libGL\.so\.1$' | head -n 1)
 [ -n "$library" ] && export PEERS_LIBGL="$library"
 
-export RAYON_NUM_THREADS=1 CARGO_TARGET_DIR="$PWD/target/peers"
+# Box2D's sources are compiled as its own build does it, optimised for speed.
+export RAYON_NUM_THREADS=1 CARGO_TARGET_DIR="$PWD/target/peers" CFLAGS="-O3"
 cargo build --quiet --release --manifest-path benches/peers/Cargo.toml || exit 1
 mkdir -p docs/images
-target/peers/release/unipbd-peers --chart docs/images/peers.svg --pictures docs/images "$@" >docs/peers.md.new || exit 1
-mv docs/peers.md.new docs/peers.md
+pictures=(--pictures docs/images)
+# The picture of the bars is that of the whole run.
+[ $# -eq 0 ] && pictures+=(--chart docs/images/peers.svg)
+exec target/peers/release/unipbd-peers --document docs/peers.md --command "benches/peers.sh${*:+ $*}" \
+    "${pictures[@]}" "$@"

@@ -7,6 +7,9 @@ import time
 
 dx, width, height, tank_width, tank_height, seconds, look = map(float, sys.argv[1:8])
 method, _, error = sys.argv[8].partition(":")
+name = "DFSPH" if method == "dfsph" else "PBF"
+# What it is asked for is read back from it before the first step.
+limits = {"maxError": float(error), "maxIterations": 100} if method == "dfsph" else {"maxIterations": 5}
 os.environ["OMP_NUM_THREADS"] = "1"
 import numpy as np  # noqa: E402
 import pysplishsplash as sph  # noqa: E402
@@ -24,8 +27,9 @@ scene = {
     "Configuration": {
         "particleRadius": dx / 2, "sim2D": True, "numberOfStepsPerRenderUpdate": 1, "density0": 1000,
         "simulationMethod": 4 if method == "dfsph" else 2, "gravitation": [0, -9.81, 0], "cflMethod": 0,
-        "timeStepSize": dt, "maxIterations": 100 if method == "dfsph" else 5, "maxError": float(error or 0.1),
-        "stopAt": seconds, "pause": False, "boundaryHandlingMethod": 0,
+        "timeStepSize": dt, "stopAt": seconds, "pause": False, "boundaryHandlingMethod": 0,
+        # Written beside the others, not under the name of the method, limits are ignored in silence.
+        name: limits,
     },
     "Materials": [{"id": "Fluid"}],
     "RigidBodies": [{
@@ -44,6 +48,37 @@ with open(path, "w") as out:
 base = sph.Exec.SimulatorBase()
 base.init(useGui=False, sceneFile=path, stopAt=seconds, outputDir=folder)
 base.initSimulation()
+
+
+def check_settings():
+    """Fails where the solver does not use what it was asked for."""
+    simulation = sph.Simulation.getCurrent()
+    step = simulation.getTimeStep()
+    found = {
+        "method": step.getMethodName(),
+        "maxIterations": step.getValueUInt(step.MAX_ITERATIONS),
+        "maxError": step.getValueFloat(step.MAX_ERROR),
+        "timeStepSize": sph.TimeManager.getCurrent().getTimeStepSize(),
+        "cflMethod": simulation.getValueInt(simulation.CFL_METHOD),
+        "particleRadius": simulation.getParticleRadius(),
+        "sim2D": simulation.is2DSimulation(),
+        "gravitation": list(simulation.getVec3ValueReal(simulation.GRAVITATION)),
+        "particles": simulation.getFluidModel(0).numActiveParticles(),
+    }
+    asked = limits | {
+        "method": name, "timeStepSize": dt, "cflMethod": 0, "particleRadius": dx / 2, "sim2D": True,
+        "gravitation": [0, -9.81, 0], "particles": columns * rows,
+    }
+    differ = {key: (asked[key], found[key]) for key in asked if not agrees(asked[key], found[key])}
+    if differ:
+        sys.exit(f"settings differ, asked and found: {differ}")
+
+
+def agrees(asked, found):
+    return asked == found if isinstance(asked, (str, bool)) else bool(np.allclose(asked, found, rtol=1e-5))
+
+
+check_settings()
 looks, state = [], {"time": 0.0, "begin": time.process_time(), "steps": 0, "next": look}
 
 
@@ -61,5 +96,5 @@ def after_step():
 
 base.setTimeStepCB(after_step)
 base.runSimulation()
-name = "SPlisHSPlasH " + (f"DFSPH {error} %" if method == "dfsph" else "PBF, 5 iterations")
-print(json.dumps({"solver": name, "time": state["time"], "steps": state["steps"], "looks": looks}))
+solver = "SPlisHSPlasH " + (f"DFSPH {error} %" if method == "dfsph" else "PBF, 5 iterations")
+print(json.dumps({"solver": solver, "time": state["time"], "steps": state["steps"], "looks": looks}))

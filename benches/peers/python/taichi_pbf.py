@@ -34,6 +34,26 @@ sys.path.insert(0, str(work.parent))
 import pbf2d_patched as pbf  # noqa: E402
 import taichi as ti  # noqa: E402
 
+
+def check_settings():
+    """Fails where the example is not what it is taken for, or not what it was patched to be."""
+    settings = ti.lang.impl.current_cfg()
+    size = (tank_width / unit + 2 * margin, tank_height / unit + 2 * margin)
+    asked_and_found = {
+        "arch": (str(ti.x64), str(settings.arch)),
+        "threads": (threads, settings.cpu_max_num_threads),
+        "particles": (columns * rows, pbf.num_particles),
+        "boundary": (size, pbf.boundary),
+        "time step": (1.0 / 20.0, pbf.time_delta),
+        "iterations": (5, pbf.pbf_num_iters),
+        "kernel radius": (1.1, pbf.h_),
+    }
+    differ = {key: both for key, both in asked_and_found.items() if both[0] != both[1]}
+    if differ:
+        sys.exit(f"settings differ, asked and found: {differ}")
+
+
+check_settings()
 pbf.init_particles()
 pbf.run_pbf()
 pbf.init_particles()

@@ -2,14 +2,14 @@
 
 use unipbd_validation::chart::{Curve, Point, log_log, mark_front};
 
-use crate::case::{Case, Outcome};
+use crate::liquids::{Case, Outcome};
 
 /// The outcomes of each solver and setting as a curve over its targets.
 pub fn curves(outcomes: &[Outcome], seconds: f64) -> Vec<Curve> {
     let mut curves: Vec<Curve> = Vec::new();
     for outcome in outcomes {
-        let name = outcome.solver.split(", target").next().unwrap_or_default().to_owned();
-        let point = Point { x: outcome.time / seconds, y: outcome.mean_compression(), counts: true, best: false };
+        let name = curve_of(&outcome.solver).to_owned();
+        let point = Point { x: outcome.time / seconds, y: outcome.errors.mean(), counts: true, best: false };
         match curves.iter_mut().find(|curve| curve.name == name) {
             Some(curve) => curve.points.push(point),
             None => curves.push(Curve { name, points: vec![point] }),
@@ -18,11 +18,17 @@ pub fn curves(outcomes: &[Outcome], seconds: f64) -> Vec<Curve> {
     curves
 }
 
+/// Solver and setting without the target, or the error allowed, that varies along the curve.
+fn curve_of(solver: &str) -> &str {
+    let solver = solver.split(", target").next().unwrap_or_default();
+    solver.find("DFSPH").map_or(solver, |start| &solver[..start + "DFSPH".len()])
+}
+
 /// All solvers on one picture.
 pub fn errors(case: &Case, particles: usize, curves: &mut [Curve]) -> String {
     mark_front(curves, 0.0);
     let title = format!("{} of {particles} particles, one thread", case.name);
-    log_log(&title, "processor time per simulated second [s]", "mean compression, by one estimate for all", curves)
+    log_log(&title, "processor time per simulated second [s]", "mean of |C|, by one estimate for all", curves)
 }
 
 /// An SVG of named numbers, all above 0.

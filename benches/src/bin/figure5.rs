@@ -9,6 +9,7 @@ use std::path::Path;
 use plotters::prelude::*;
 use unipbd_benches::growth::{self, ORIGINAL, Point, SIZES};
 use unipbd_core::scene::Preset;
+use unipbd_validation::stamp::{machine, stamp};
 
 /// Exponents are fitted from this size on: below, the cost of starting threads and stages counts.
 const FITTED_FROM: usize = 1_600;
@@ -93,7 +94,7 @@ fn draw(path: &Path, curves: &[Curve]) -> Result<(), Box<dyn Error>> {
 }
 
 fn page(curves: &[Curve]) -> String {
-    let mut text = INTRODUCTION.to_owned();
+    let mut text = format!("{INTRODUCTION}Measured {}, on {}.\n\n", stamp(), machine());
     for curve in curves {
         let exponent = growth::exponent(&curve.points, FITTED_FROM);
         text += &format!("- **{}**: {}; grows as N^{exponent:.2} from {FITTED_FROM} on.\n", curve.name, curve.what);

@@ -2,17 +2,16 @@
 //!
 //! `cargo run --release -p unipbd-benches --bin report [sizes ...] > docs/performance.md`
 
-use std::process::Command;
-
 use unipbd_benches::steps::{self, Measured};
 use unipbd_benches::{on_two_threads, roofline, sleep};
 use unipbd_core::simd::Level;
+use unipbd_validation::stamp::{machine, stamp};
 
 fn main() {
     let given: Vec<usize> = std::env::args().skip(1).filter_map(|size| size.parse().ok()).collect();
     let sizes = if given.is_empty() { vec![1_000, 10_000, 100_000, 1_000_000] } else { given };
     println!("{INTRODUCTION}");
-    println!("{}\n", machine());
+    println!("Measured {}, on {}.\n", stamp(), machine());
     println!("## Passes\n\n{PASSES}\n");
     // Most machines have AVX2 but not AVX-512.
     let mut levels = vec![Level::best()];
@@ -67,8 +66,8 @@ const ELSEWHERE: &str = "\
 
 const PASSES: &str = "\
 A lattice with random shifts, h = 2 dx. \"Scalar\" is a plain loop over vectors and a compressed list of
-the same pairs; the roofline is a loop of nothing but one exact square root and one quotient per slot of
-the list, eight at a time. A whole step is the sort, the list, four iterations of density and correction,
+the same pairs; the roofline is a loop of nothing but one exact square root per slot of the list, eight
+at a time, as the kernel needs no quotient. A whole step is the sort, the list, four iterations of density and correction,
 and viscosity. Results have the same bits on every instruction set and number of threads.";
 
 const STEPS: &str = "\
@@ -77,17 +76,6 @@ particle and substep, the least over the frames.";
 
 fn frames(size: usize) -> u32 {
     (2_000_000 / size.max(1)).clamp(3, 100) as u32
-}
-
-fn machine() -> String {
-    let information = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
-    let model = information.lines().find_map(|line| line.strip_prefix("model name")).unwrap_or("unknown processor");
-    let model = model.trim_start_matches(['\t', ' ', ':']);
-    let threads = std::thread::available_parallelism().map_or(1, usize::from);
-    let compiler = Command::new("rustc").arg("--version").output().map(|output| output.stdout).unwrap_or_default();
-    let compiler = String::from_utf8_lossy(&compiler).trim().to_owned();
-    let (version, level) = (env!("CARGO_PKG_VERSION"), Level::best());
-    format!("{model}, {threads} hardware threads, {level:?}; {compiler}; unipbd {version}.")
 }
 
 fn step_table(measured: &[Measured]) -> String {

@@ -1,4 +1,4 @@
-//! Times the passes over pairs against a scalar loop and a loop of square roots and quotients.
+//! Times the passes over pairs against a scalar loop and a loop of square roots.
 //!
 //! `cargo run --release -p unipbd-benches --bin roofline [particles ...] [levels]`
 

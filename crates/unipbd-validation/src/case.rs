@@ -1,8 +1,8 @@
 //! What a case is, and what comes of it.
 
-use unipbd_core::scene::SolverSettings;
+use unipbd_core::scene::{Scene, SolverSettings};
 
-use crate::runner::{Cost, Failure};
+use crate::runner::{Cost, Failure, Runner};
 
 /// Where a figure must lie.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -85,9 +85,21 @@ pub struct Trial {
     pub resolution: u32,
     /// How the constraints are solved.
     pub solver: SolverSettings,
+    /// Most frames of a stretch: no limit for figures, one to see that a case can be built.
+    pub frames: u32,
 }
 
 impl Trial {
+    /// Builds a scene of the case on one thread.
+    ///
+    /// # Errors
+    /// When the scene is refused.
+    pub fn start(&self, scene: &Scene) -> Result<Runner, Failure> {
+        let mut runner = Runner::new(scene)?;
+        runner.most = self.frames;
+        Ok(runner)
+    }
+
     /// A band that is meant for this target compression, or a lower one; above it the figure is reported only.
     pub fn from_target(&self, target: f64, band: Band) -> Band {
         if self.solver.target_compression <= target { band } else { Band::OPEN }
@@ -150,7 +162,21 @@ impl Case {
     /// # Errors
     /// When the scene is refused or the run diverges.
     pub fn run(&self, resolution: u32, solver: &SolverSettings) -> Result<Outcome, Failure> {
-        let (figures, cost) = (self.run)(&Trial { resolution, solver: solver.clone() })?;
-        Ok(Outcome { case: self.name, resolution, figures, cost })
+        self.trial(Trial { resolution, solver: solver.clone(), frames: u32::MAX })
+    }
+
+    /// Builds the scenes of the case and runs a frame of every stretch: its figures mean nothing.
+    ///
+    /// # Errors
+    /// When a scene is refused or its first frames diverge.
+    pub fn build(&self, resolution: u32, solver: &SolverSettings) -> Result<Outcome, Failure> {
+        // How far the start settles makes no difference to whether it can be built, but most of the time.
+        let solver = SolverSettings { settle_substeps: Some(0), ..solver.clone() };
+        self.trial(Trial { resolution, solver, frames: 1 })
+    }
+
+    fn trial(&self, trial: Trial) -> Result<Outcome, Failure> {
+        let (figures, cost) = (self.run)(&trial)?;
+        Ok(Outcome { case: self.name, resolution: trial.resolution, figures, cost })
     }
 }

@@ -32,6 +32,11 @@ impl Errors {
         self.compression / self.count.max(1) as f64
     }
 
+    /// Mean of max(-C, 0); 0 where nothing is interior.
+    pub fn mean_dilation(self) -> f64 {
+        self.dilation / self.count.max(1) as f64
+    }
+
     /// Mean of |C|; 0 where nothing is interior.
     pub fn mean(self) -> f64 {
         (self.compression + self.dilation) / self.count.max(1) as f64

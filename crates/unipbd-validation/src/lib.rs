@@ -5,12 +5,15 @@ pub mod case;
 pub mod cases;
 pub mod chart;
 pub mod compression;
+pub mod document;
 pub mod exact;
 mod notes;
+pub mod plan;
 pub mod precision;
 pub mod report;
 pub mod runner;
 pub mod scenes;
+pub mod stamp;
 pub mod stress;
 pub mod sweep;
 

@@ -4,7 +4,9 @@ use std::path::Path;
 use std::process::ExitCode;
 
 use unipbd_core::scene::{GradientPoint, KernelKind, SolverSettings, Substeps};
-use unipbd_validation::report::{Entry, sheet, with_notes, with_section};
+use unipbd_validation::document::{with_introduction, with_section};
+use unipbd_validation::plan::{Line, lines};
+use unipbd_validation::report::{Entry, with_notes};
 use unipbd_validation::stress::map::MAPS;
 use unipbd_validation::stress::{
     Ending, NAMED, Quiet, chart, endure_random, fuzz, quiet, random_scene, shrink, summary,
@@ -12,9 +14,10 @@ use unipbd_validation::stress::{
 use unipbd_validation::{cases, precision, report, sweep};
 
 const HELP: &str =
-    "usage: unipbd-validation [--quick | --full | --sweep [--full] [CASE...] | --stress [--full] | --map | --precision | CASE [RESOLUTION] [SETTING=VALUE...]]
+    "usage: unipbd-validation [--quick | --full [CASE...] | --sweep [--full] [CASE...] | --stress [--full] | --map | --precision | CASE [RESOLUTION] [SETTING=VALUE...]]
   --quick   every case at its quick size (default)
-  --full    every case at three resolutions and three targets; writes docs/accuracy.md
+  --full    every case at three resolutions and three targets, or those named; writes docs/accuracy.md; a line that
+            fails makes the command fail
   --sweep   run time against error for four cases, or those named; writes docs/accuracy/*.csv and *.svg
   --stress  scenes that ask too much, a pool at rest for 20,000 steps (a million with --full), and 100 random
             scenes (2000 with --full); one that breaks is shrunk and kept
@@ -44,7 +47,7 @@ fn main() -> ExitCode {
     } else if has("--sweep") {
         run_sweeps(has("--full"), &arguments)
     } else if has("--full") {
-        run_full()
+        run_full(&arguments)
     } else if let Some(name) = arguments.first().filter(|name| *name != "--quick") {
         run_one(name, &arguments[1..])
     } else {
@@ -61,7 +64,7 @@ fn main() -> ExitCode {
 }
 
 fn show(entry: &Entry) {
-    println!("{} at {}, target {}: {}", entry.case.name, entry.resolution, entry.target, entry.verdict());
+    println!("{}: {}", entry.line, entry.verdict());
     let Ok(outcome) = &entry.result else { return };
     for figure in &outcome.figures {
         let mark = if figure.holds() { " " } else { "!" };
@@ -77,7 +80,7 @@ fn show(entry: &Entry) {
 }
 
 fn run_quick() -> bool {
-    let entries = cases::ALL.iter().map(|case| Entry::run(case, case.quick, 0.01));
+    let entries = cases::ALL.iter().map(|case| Entry::run(Line::quick(case)));
     entries.inspect(show).filter(|entry| entry.verdict() != "holds").count() == 0
 }
 
@@ -94,7 +97,8 @@ fn run_one(name: &str, rest: &[String]) -> Result<bool, Box<dyn std::error::Erro
         }
     }
     let target = solver.target_compression;
-    let entry = Entry { case, resolution, target, coarse: false, result: case.run(resolution, &solver) };
+    let line = Line { case, resolution, target, coarse: solver.coarse_projection > 0 };
+    let entry = Entry { line, result: case.run(resolution, &solver) };
     show(&entry);
     Ok(entry.verdict() == "holds")
 }
@@ -134,40 +138,33 @@ fn set(solver: &mut SolverSettings, key: &str, value: &str) -> Result<(), Box<dy
     Ok(())
 }
 
-/// Cases of one liquid in static walls, and what is near enough: run with a coarse projection too.
-const COARSE: [&str; 4] = ["column", "dam_break", "standing_wave", "elliptical_drop"];
-
-/// Writes the sheet after every case: a run that is cut off leaves what it has.
-fn run_full() -> Result<bool, Box<dyn std::error::Error>> {
+/// Writes the section of a case as soon as it is measured: a run that is cut off leaves what it has.
+fn run_full(arguments: &[String]) -> Result<bool, Box<dyn std::error::Error>> {
     std::fs::create_dir_all("docs")?;
-    let charts: Vec<String> = sweep::NORMS
-        .iter()
-        .map(|norm| format!("accuracy/{}.svg", norm.picture))
-        .filter(|path| Path::new("docs").join(path).exists())
-        .collect();
-    let mut entries = Vec::new();
-    for case in cases::ALL {
-        let mut resolutions = case.full.to_vec();
-        resolutions.dedup();
-        for resolution in resolutions {
-            for &target in case.targets {
-                let entry = Entry::run(case, resolution, target);
-                show(&entry);
-                entries.push(entry);
-            }
-            if COARSE.contains(&case.name) {
-                let entry = Entry::run_coarse(case, resolution, 0.01);
-                show(&entry);
-                entries.push(entry);
-            }
+    let names = names(arguments);
+    let mut failed = Vec::new();
+    for case in cases::ALL.iter().filter(|case| names.is_empty() || names.contains(&case.name)) {
+        let entries: Vec<Entry> = lines(case).into_iter().map(Entry::run).inspect(show).collect();
+        if let Some((heading, body)) = report::section(&entries) {
+            write_section(&heading, &body)?;
         }
-        let own = entries.iter().filter(|entry| entry.case.name == case.name && !entry.coarse);
-        let own: Vec<&Entry> = own.collect();
-        print!("{}", report::work(&own));
-        std::fs::write(SHEET, sheet(&entries, &charts))?;
+        let fails = |entry: &&Entry| entry.result.is_err();
+        failed.extend(entries.iter().filter(fails).map(|entry| format!("{}: {}", entry.line, entry.verdict())));
     }
-    run_precision()?;
-    run_map()
+    if names.is_empty() {
+        let charts = sweep::NORMS.iter().map(|norm| format!("accuracy/{}.svg", norm.picture));
+        let charts: Vec<String> = charts.filter(|path| Path::new("docs").join(path).exists()).collect();
+        write_section(report::CHARTS, &report::charts_section(&charts))?;
+        run_precision()?;
+        run_map()?;
+    }
+    failed.iter().for_each(|line| eprintln!("{line}"));
+    Ok(failed.is_empty())
+}
+
+/// The arguments that are no flags.
+fn names(arguments: &[String]) -> Vec<&str> {
+    arguments.iter().map(String::as_str).filter(|argument| !argument.starts_with("--")).collect()
 }
 
 /// Runs the same scenes in f32 and f64; writes the section of the sheet.
@@ -198,17 +195,18 @@ fn run_map() -> Result<bool, Box<dyn std::error::Error>> {
     Ok(true)
 }
 
-/// Puts a section into the sheet, and the notes as they are now; the rest of it stays.
+/// Puts a section into the sheet, and the introduction and notes as they are now; the rest of it stays.
 fn write_section(heading: &str, body: &str) -> std::io::Result<()> {
-    let document = with_notes(&std::fs::read_to_string(SHEET)?);
-    std::fs::write(SHEET, with_section(&document, heading, body))
+    let document = std::fs::read_to_string(SHEET).unwrap_or_default();
+    let document = with_section(&with_introduction(&document, report::INTRODUCTION), heading, body);
+    std::fs::write(SHEET, with_notes(&document))
 }
 
 fn run_sweeps(full: bool, arguments: &[String]) -> Result<bool, Box<dyn std::error::Error>> {
     std::fs::create_dir_all("docs/accuracy")?;
-    let names: Vec<&String> = arguments.iter().filter(|argument| !argument.starts_with("--")).collect();
+    let names = names(arguments);
     for (case, resolution) in sweep::cases(full) {
-        if !names.is_empty() && !names.iter().any(|name| *name == case.name) {
+        if !names.is_empty() && !names.contains(&case.name) {
             continue;
         }
         let swept = sweep::sweep(case, resolution, |line| println!("{line}"));

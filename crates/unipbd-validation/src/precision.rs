@@ -7,6 +7,7 @@ use unipbd_core::math::Vector64;
 use unipbd_core::scene::{Block, Disc, Liquid, Scene, SolverSettings, Substeps, Tank};
 
 use crate::runner::{Failure, Runner, energy, points, velocities};
+use crate::stamp::stamp;
 
 /// Heading of the section in the accuracy sheet.
 pub const HEADING: &str = "Single and double precision";
@@ -189,9 +190,9 @@ pub fn measure_double() -> Result<Vec<Reading>, Failure> {
 
 /// The body of the section.
 pub fn section(single: &[Reading], double: &[Reading]) -> String {
-    let mut text = String::from(
-        "Made by `cargo run --release -p unipbd-validation -- --precision`: the same scenes in f32, the build that \
-         ships, and with the cargo feature `f64`, at 8 substeps. Mean C is taken over particles and frames; momentum is \
+    let mut text = format!("Made by `cargo run --release -p unipbd-validation -- --precision`, {}: ", stamp());
+    text.push_str(
+        "the same scenes in f32, the build that ships, and with the cargo feature `f64`, at 8 substeps. Mean C is taken over particles and frames; momentum is \
          its change over the sum of m |v| at the start, angular momentum likewise; energy is its change from start to \
          end. The spacing is 1/8 m, so that walls and lattices lie at the same places in both.\n\n\
          At 1e5 dx a position in f32 is rounded to 0.008 dx. From 4096 dx on the density is therefore summed over \

@@ -53,6 +53,8 @@ pub struct Runner {
     pub solver: Solver,
     /// So far.
     pub cost: Cost,
+    /// Most frames of a stretch.
+    pub most: u32,
     neighbors: f64,
 }
 
@@ -63,9 +65,10 @@ impl Runner {
     /// When the scene is refused.
     pub fn new(scene: &Scene) -> Result<Runner, Failure> {
         let options = BuildOptions { threads: Some(1), ..BuildOptions::default() };
-        let solver = scene.build(options).map_err(|problems| Failure(format!("{problems:?}")))?;
+        let solver = scene.build(options).map_err(|problems| Failure(problems.to_string()))?;
         let radius = scene.solver.kernel_radius;
-        Ok(Runner { solver, cost: Cost::default(), neighbors: std::f64::consts::PI * radius * radius })
+        let neighbors = std::f64::consts::PI * radius * radius;
+        Ok(Runner { solver, cost: Cost::default(), most: u32::MAX, neighbors })
     }
 
     /// Advances by one frame.
@@ -84,12 +87,12 @@ impl Runner {
         Ok(())
     }
 
-    /// Advances by this many frames and looks after each.
+    /// Advances by a stretch of this many frames, or as many as are allowed, and looks after each.
     ///
     /// # Errors
     /// When the run diverges.
     pub fn frames(&mut self, count: u32, mut look: impl FnMut(&Solver)) -> Result<(), Failure> {
-        for _ in 0..count {
+        for _ in 0..count.min(self.most) {
             self.frame()?;
             look(&self.solver);
         }

@@ -7,7 +7,7 @@ use unipbd_core::scene::{GradientPoint, KernelKind, Liquid, Scene, SolverSetting
 use crate::case::{Case, Outcome};
 use crate::cases::{self, DENSITY_ERROR, LEVEL, WORST};
 use crate::chart::{Curve, Point, log_log, mark_front};
-use crate::report;
+use crate::plan;
 
 /// The cases of the sweep, with the resolutions of the quick and the full one.
 pub const CASES: [(&str, u32, u32); 4] =
@@ -158,7 +158,7 @@ impl Variant {
         let mut all: Vec<SolverSettings> = match self.scan {
             Scan::Substeps(iterations) => [4, 8, 16, 32].map(|n| fixed((n / iterations).max(1), iterations)).to_vec(),
             Scan::Iterations => [4, 8, 16, 32].map(|iterations| fixed(1, iterations)).to_vec(),
-            Scan::Targets => [0.04, 0.02, 0.01, 0.005, 0.0025].map(report::settings).to_vec(),
+            Scan::Targets => [0.04, 0.02, 0.01, 0.005, 0.0025].map(plan::settings).to_vec(),
         };
         all.iter_mut().for_each(self.change);
         all

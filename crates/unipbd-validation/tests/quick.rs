@@ -1,16 +1,17 @@
 //! Quick sizes of the cases against their bands, and a part of the stresses.
 
 use unipbd_core::scene::{GradientPoint, Scene, SolverSettings, Substeps};
-use unipbd_validation::report::{Entry, sheet};
+use unipbd_validation::plan::{Line, lines, settings};
+use unipbd_validation::report::{Entry, section};
 use unipbd_validation::stress::map::MAPS;
 use unipbd_validation::stress::{Ending, NAMED, endure_random, fuzz, quiet};
-use unipbd_validation::{cases, precision, report};
+use unipbd_validation::{cases, precision};
 
 /// Runs a case at its quick size; fails with all figures that miss their bands.
 #[track_caller]
 fn holds(name: &str) {
     let case = cases::find(name).unwrap_or_else(|| panic!("no case {name}"));
-    let outcome = case.run(case.quick, &report::settings(0.01)).unwrap_or_else(|failure| panic!("{failure}"));
+    let outcome = case.run(case.quick, &settings(0.01)).unwrap_or_else(|failure| panic!("{failure}"));
     for figure in &outcome.figures {
         println!("{name}: {}: {:.5e} ({})", figure.what, figure.value, figure.band);
     }
@@ -59,9 +60,9 @@ fn heavy_over_light_overturns_at_the_known_rate() {
 #[test]
 fn vortices_decay_as_fast_as_their_viscosity_says() {
     let error = |solver: &SolverSettings| figure("taylor_green", 50, solver, "kinetic energy error to t = 1");
-    let shifted = error(&report::settings(0.01));
+    let shifted = error(&settings(0.01));
     assert!(shifted <= 0.06, "{shifted}");
-    let plain = error(&SolverSettings { shifting: Some(0.0), ..report::settings(0.01) });
+    let plain = error(&SolverSettings { shifting: Some(0.0), ..settings(0.01) });
     assert!(plain >= 2.0 * shifted, "shifting is what keeps the energy: {plain} without");
 }
 
@@ -94,7 +95,7 @@ fn half_way_with_a_wide_kernel_a_wave_loses_less_than_a_sixth_per_period() {
 
 #[test]
 fn a_column_presses_with_its_weight() {
-    let solver = report::settings(0.01);
+    let solver = settings(0.01);
     assert!(figure("column", 20, &solver, "pressure slope error").abs() <= 0.02);
     assert!(figure("column", 20, &solver, "error of the force on the floor").abs() <= 0.001);
     assert!(figure("two_layers", 24, &solver, "pressure error of the upper layer").abs() <= 0.02);
@@ -175,9 +176,24 @@ fn random_scenes_end_sound_or_stop() {
 
 #[test]
 fn the_sheet_has_a_row_for_every_figure() {
-    let entry = Entry::run(cases::find("drag").expect("the case exists"), 1, 0.01);
+    let entry = Entry::run(Line::quick(cases::find("drag").expect("the case exists")));
     let figures = entry.result.as_ref().expect("the case runs").figures.len();
-    let text = sheet(&[entry], &[]);
+    let (heading, text) = section(&[entry]).expect("there is an entry");
     assert_eq!(text.lines().filter(|line| line.starts_with("| 1 | 0.01 |")).count(), figures, "{text}");
-    assert!(text.contains("holds") && text.contains("## drag"), "{text}");
+    assert!(text.contains("holds") && text.contains("commit") && heading == "drag", "{text}");
+}
+
+/// Scenes change under the cases: a sheet that takes an hour must not end in rows that were refused.
+#[test]
+fn every_line_of_the_sheet_can_be_built_and_begun() {
+    let built = |line: Line| line.case.build(line.resolution, &line.solver()).err().map(|why| format!("{line}: {why}"));
+    let failed: Vec<String> = cases::ALL.iter().flat_map(lines).filter_map(built).collect();
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
+}
+
+#[test]
+fn the_committed_sheet_has_no_row_that_failed() {
+    let sheet = include_str!("../../../docs/accuracy.md");
+    let failed: Vec<&str> = sheet.lines().filter(|line| line.contains("fails:")).collect();
+    assert!(failed.is_empty(), "{}", failed.join("\n"));
 }

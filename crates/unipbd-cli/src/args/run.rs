@@ -116,6 +116,8 @@ pub struct LogArgs {
     #[arg(long, value_name = "FIELDS", default_value = "", hide_default_value = true)]
     pub fields: Fields,
     /// Write no log
+    ///
+    /// With -q too, and neither --json nor --stop-on, the frames are not measured either: the quickest run.
     #[arg(long, conflicts_with_all = ["output", "force", "fields"])]
     pub no_record: bool,
 }

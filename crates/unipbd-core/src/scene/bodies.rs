@@ -218,6 +218,23 @@ pub struct JointDescription {
     pub motor_torque: f64,
 }
 
+impl JointDescription {
+    /// A joint between a body and the world at a point [m].
+    pub fn new(kind: JointRule, body: &str, at: [f64; 2]) -> Self {
+        JointDescription {
+            kind,
+            body: body.to_owned(),
+            other: None,
+            at,
+            other_at: None,
+            length: None,
+            compliance: 0.0,
+            motor_speed_deg: None,
+            motor_torque: boundless(),
+        }
+    }
+}
+
 /// What a joint keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]

@@ -5,7 +5,7 @@ use unipbd_core::scene::{Copies, Heap, JointDescription, JointRule, RotationRule
 
 use crate::case::{Band, Case, Figure, Measured, TARGETS, Trial};
 use crate::exact::pendulum;
-use crate::runner::{Cost, Failure, Runner};
+use crate::runner::{Cost, Failure};
 use crate::scenes::{GRAVITY, body, floor};
 
 /// For bodies the resolution is the number of substeps.
@@ -43,7 +43,7 @@ fn block_on_incline(trial: &Trial) -> Result<Measured, Failure> {
         let mut block = body("block", [0.0, 0.1]);
         (block.size, block.friction) = (Some([0.4, 0.2]), FRICTION);
         scene.body.push(block);
-        let mut run = Runner::new(&scene)?;
+        let mut run = trial.start(&scene)?;
         run.frames(30, |_| ())?;
         let before = run.solver.bodies()[0].velocity.x;
         run.frames(60, |_| ())?;
@@ -83,7 +83,7 @@ fn disc_on_incline(trial: &Trial) -> Result<Measured, Failure> {
         let mut disc = body("disc", [0.0, 0.2]);
         (disc.radius, disc.friction) = (Some(0.2), FRICTION);
         scene.body.push(disc);
-        let mut run = Runner::new(&scene)?;
+        let mut run = trial.start(&scene)?;
         run.frames(30, |_| ())?;
         let before = run.solver.bodies()[0].velocity.x;
         run.frames(60, |_| ())?;
@@ -107,15 +107,9 @@ fn disc_on_incline(trial: &Trial) -> Result<Measured, Failure> {
 
 fn rod(first: &str, second: Option<&str>, at: [f64; 2], other_at: [f64; 2]) -> JointDescription {
     JointDescription {
-        kind: JointRule::Rod,
-        body: first.to_owned(),
         other: second.map(str::to_owned),
-        at,
         other_at: Some(other_at),
-        length: None,
-        compliance: 0.0,
-        motor_speed_deg: None,
-        motor_torque: 0.0,
+        ..JointDescription::new(JointRule::Rod, first, at)
     }
 }
 
@@ -148,7 +142,7 @@ fn swing(trial: &Trial, amplitude_deg: f64) -> Result<(f64, Cost), Failure> {
         joint: vec![rod("bob", None, place, [0.0, 0.0])],
         ..Scene::default()
     };
-    let mut run = Runner::new(&scene)?;
+    let mut run = trial.start(&scene)?;
     let (mut crossings, mut last) = (Vec::new(), (0.0, place[0]));
     run.frames(60 * 10, |solver| {
         let now = (solver.time(), solver.bodies()[0].position.x);
@@ -193,7 +187,7 @@ fn rope(trial: &Trial) -> Result<Measured, Failure> {
             _ => rod(&name(link), Some(&name(link + 1)), a, b),
         });
     }
-    let mut run = Runner::new(&scene)?;
+    let mut run = trial.start(&scene)?;
     let (mut error, mut stretch) = (0.0, 0.0f64);
     run.frames(120, |solver| {
         let places: Vec<_> = solver.bodies().iter().map(|body| body.position).collect();
@@ -257,7 +251,7 @@ fn granular(trial: &Trial) -> Result<Measured, Failure> {
     let wall = unipbd_core::scene::HalfPlane { normal: [1.0, 0.0], ..floor(0.0) };
     let scene =
         Scene { spacing: radius, solver, half_plane: vec![floor(0.5), wall], body: vec![disc], ..Scene::default() };
-    let mut run = Runner::new(&scene)?;
+    let mut run = trial.start(&scene)?;
     let width = extent(&run.solver, radius);
     run.frames(240, |_| ())?;
     let reach = extent(&run.solver, radius);

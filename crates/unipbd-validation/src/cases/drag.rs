@@ -4,7 +4,7 @@ use unipbd_core::kernel::Kernel;
 use unipbd_core::scene::{Block, Gas, Scene};
 
 use crate::case::{Band, Case, Figure, Measured, TARGETS, Trial};
-use crate::runner::{Failure, Runner, velocities};
+use crate::runner::{Failure, velocities};
 
 /// The drag of thin gas is linear in its velocity.
 pub const DRAG: Case = Case {
@@ -26,7 +26,7 @@ fn drag(trial: &Trial) -> Result<Measured, Failure> {
         block: vec![Block { temperature: 1.0, ..Block::new("gas", [0.0, 0.0], [spacing, spacing]) }],
         ..Scene::default()
     };
-    let mut run = Runner::new(&scene)?;
+    let mut run = trial.start(&scene)?;
     let kernel = Kernel::new(trial.solver.kernel_radius * spacing);
     let own = f64::from(kernel.value(0.0));
     let inverse_time = rate * (1.0 - own / (own + kernel.lattice(spacing).value));

@@ -35,7 +35,7 @@ fn elliptical(trial: &Trial) -> Result<Measured, Failure> {
         }],
         ..Scene::default()
     };
-    let mut run = Runner::new(&scene)?;
+    let mut run = trial.start(&scene)?;
     run.stir(|x| Vector64::new(x.x, -x.y))?;
     let (start, before) = (axes(&run), energy(&run.solver));
     let (mut long, mut short) = (0.0f64, 0.0f64);

@@ -7,7 +7,7 @@ use unipbd_core::scene::{Block, Domain, HalfPlane, Liquid, LiquidSurface, Scene,
 
 use crate::case::{Band, Case, Figure, Measured, TARGETS, Trial};
 use crate::exact::{couette, poiseuille};
-use crate::runner::{Failure, Runner, points, velocities};
+use crate::runner::{Failure, points, velocities};
 
 /// Decaying vortices on a periodic square.
 pub const TAYLOR_GREEN: Case = Case {
@@ -59,7 +59,7 @@ fn taylor_green(trial: &Trial, reynolds: f64, band: Band) -> Result<Measured, Fa
         block: vec![Block { jitter: 0.5, ..Block::new("fluid", [0.0, 0.0], [1.0, 1.0]) }],
         ..Scene::default()
     };
-    let mut run = Runner::new(&scene)?;
+    let mut run = trial.start(&scene)?;
     let field = |x: Vector64| {
         let (x, y) = (2.0 * PI * x.x, 2.0 * PI * x.y);
         Vector64::new(-x.cos() * y.sin(), x.sin() * y.cos())
@@ -122,7 +122,7 @@ const SPEED: f64 = 1.0;
 const VISCOSITY: f64 = 0.1;
 
 fn channel(trial: &Trial, drive: Drive) -> Result<Measured, Failure> {
-    let mut run = Runner::new(&channel_scene(trial.resolution, drive, &trial.solver))?;
+    let mut run = trial.start(&channel_scene(trial.resolution, drive, &trial.solver))?;
     let profile = |y: f64, tau: f64| match drive {
         Drive::Lid => couette(y, tau),
         Drive::Force => poiseuille(y, tau),

@@ -7,7 +7,7 @@ use unipbd_core::scene::{Block, Liquid, Scene, Tank, Wave};
 
 use super::pool::floor_force;
 use crate::case::{Band, Case, Figure, Measured, TARGETS, Trial};
-use crate::runner::{Failure, Runner, points, points_of};
+use crate::runner::{Failure, points, points_of};
 use crate::scenes::{GRAVITY, SPACING};
 
 fn layers(width: f64, upper: (f64, f64), lower: (f64, f64), trial: &Trial) -> Scene {
@@ -36,7 +36,7 @@ fn two_layers(trial: &Trial) -> Result<Measured, Failure> {
     let half = f64::from(trial.resolution) / 2.0;
     let mut scene = layers(16.0, (1000.0, half), (2000.0, half), trial);
     scene.tank = vec![Tank { name: "tank".to_owned(), ..Tank::new([0.0, 0.0], [1.6, 4.0 * half * SPACING]) }];
-    let mut run = Runner::new(&scene)?;
+    let mut run = trial.start(&scene)?;
     let frames = (60.0 * 20.0 * (2.0 * half * SPACING / GRAVITY).sqrt()).ceil() as u32;
     run.frames(frames, |_| ())?;
     let (mut upper, mut lower, mut square, mut mean, mut level) = (0.0, 0.0, 0.0, 0.0, 0.0f64);
@@ -115,16 +115,14 @@ fn rayleigh_taylor(trial: &Trial) -> Result<Measured, Failure> {
         top: Some(2.0 * width),
     };
     let scene = Scene { wave: vec![wave], ..layers(cells, (2000.0, cells), (1000.0, cells), trial) };
-    let mut run = Runner::new(&scene)?;
+    let mut run = trial.start(&scene)?;
     let exact = (GRAVITY * k * (k * width).tanh() / 3.0).sqrt();
-    let start = amplitude(&run, k, width);
+    let start = amplitude(&run.solver, k, width);
     let mut compression = Vec::new();
-    while run.solver.time() < PHASE / exact {
-        run.frame()?;
-        compression.push(run.solver.diagnostics().density_error_mean);
-    }
+    let frames = (60.0 * PHASE / exact).ceil() as u32;
+    run.frames(frames, |solver| compression.push(solver.diagnostics().density_error_mean))?;
     // From rest the amplitude goes as cosh(rate t).
-    let growth = (amplitude(&run, k, width) / start).max(1.0).acosh() / run.solver.time();
+    let growth = (amplitude(&run.solver, k, width) / start).max(1.0).acosh() / run.solver.time();
     let figures = vec![
         Figure::new("growth over the exact rate", growth / exact, Band::between(0.75, 1.05)),
         Figure::new("mean C", compression.iter().sum::<f64>() / compression.len() as f64, Band::OPEN),
@@ -133,6 +131,6 @@ fn rayleigh_taylor(trial: &Trial) -> Result<Measured, Failure> {
 }
 
 /// Amplitude of the interface, from the lower liquid alone [m].
-fn amplitude(run: &Runner, k: f64, width: f64) -> f64 {
-    points_of(&run.solver, 0).map(|x| (k * x.x).cos()).sum::<f64>() * SPACING * SPACING * 2.0 / width
+fn amplitude(solver: &Solver, k: f64, width: f64) -> f64 {
+    points_of(solver, 0).map(|x| (k * x.x).cos()).sum::<f64>() * SPACING * SPACING * 2.0 / width
 }

@@ -5,7 +5,7 @@ use unipbd_core::Solver;
 use crate::case::{Band, Case, Figure, Measured, TARGETS, Trial};
 use crate::compression::{Errors, Estimator};
 use crate::exact::{MARTIN_MOYCE_FRONT, MARTIN_MOYCE_HEIGHT};
-use crate::runner::{Failure, Runner, energy, points};
+use crate::runner::{Failure, energy, points};
 use crate::scenes::{GRAVITY, SPACING, body, pool};
 
 /// The figure that tells the work of a frame per particle.
@@ -39,7 +39,7 @@ fn column(trial: &Trial) -> Result<Measured, Failure> {
     let depth = f64::from(trial.resolution);
     let mut scene = pool((16.0, depth), 16.0, &trial.solver);
     scene.tank[0].name = "tank".to_owned();
-    let mut run = Runner::new(&scene)?;
+    let mut run = trial.start(&scene)?;
     // Sound has died down after 20 sqrt(H/g); the last half second is measured.
     let frames = (60.0 * 20.0 * (depth * SPACING / GRAVITY).sqrt()).ceil().clamp(120.0, 2400.0) as u32;
     run.frames(frames, |_| ())?;
@@ -105,7 +105,7 @@ pub const DAM_BREAK: Case = Case {
 
 fn dam_break(trial: &Trial) -> Result<Measured, Failure> {
     let a = f64::from(trial.resolution);
-    let mut run = Runner::new(&pool((a, 2.0 * a), 6.0 * a, &trial.solver))?;
+    let mut run = trial.start(&pool((a, 2.0 * a), 6.0 * a, &trial.solver))?;
     let width = a * SPACING;
     let scale = (2.0 * GRAVITY / width).sqrt();
     let start = energy(&run.solver);
@@ -223,7 +223,7 @@ fn float(trial: &Trial, ratio: f64) -> Result<(f64, f64, crate::Cost), Failure> 
         water(0.0, bottom, left.floor(), depth),
         water(right.ceil(), bottom, pool_width, depth),
     ];
-    let mut run = Runner::new(&scene)?;
+    let mut run = trial.start(&scene)?;
     run.frames(240, |_| ())?;
     let (mut place, mut compression) = (0.0, 0.0);
     run.frames(120, |solver| {

@@ -2,11 +2,12 @@
 
 use std::f64::consts::PI;
 
+use unipbd_core::Solver;
 use unipbd_core::math::Vector64;
 
 use crate::case::{Band, Case, Figure, Measured, TARGETS, Trial};
 use crate::exact::wave_viscosity;
-use crate::runner::{Failure, Runner, points};
+use crate::runner::{Failure, points};
 use crate::scenes::{GRAVITY, SPACING, pool};
 
 /// The fundamental of a tank half as deep as long.
@@ -27,7 +28,7 @@ const STEEPNESS: f64 = 0.05;
 
 fn standing_wave(trial: &Trial) -> Result<Measured, Failure> {
     let cells = f64::from(trial.resolution);
-    let mut run = Runner::new(&pool((cells, 0.5 * cells), cells, &trial.solver))?;
+    let mut run = trial.start(&pool((cells, 0.5 * cells), cells, &trial.solver))?;
     let (length, depth) = (cells * SPACING, 0.5 * cells * SPACING);
     let k = PI / length;
     let omega = (GRAVITY * k * (k * depth).tanh()).sqrt();
@@ -40,14 +41,13 @@ fn standing_wave(trial: &Trial) -> Result<Measured, Failure> {
         Vector64::new(along, up) * size
     })?;
     run.stir(|_| Vector64::ZERO)?;
-    let mut curve = vec![(run.solver.time(), amplitude(&run, k, length))];
+    let mut curve = vec![(run.solver.time(), amplitude(&run.solver, k, length))];
     let mut compression = Vec::new();
     let frames = (60.0 * 3.3 * 2.0 * PI / omega).ceil() as u32;
-    for _ in 0..frames {
-        run.frame()?;
-        curve.push((run.solver.time(), amplitude(&run, k, length)));
-        compression.push(run.solver.diagnostics().density_error_mean);
-    }
+    run.frames(frames, |solver| {
+        curve.push((solver.time(), amplitude(solver, k, length)));
+        compression.push(solver.diagnostics().density_error_mean);
+    })?;
     let (period, decay) = period_and_decay(&curve);
     let error = period * omega / (2.0 * PI) - 1.0;
     let viscosity = wave_viscosity(decay, omega, k);
@@ -61,8 +61,8 @@ fn standing_wave(trial: &Trial) -> Result<Measured, Failure> {
 }
 
 /// Amplitude of the fundamental: the sum of V cos(k x) is the integral of eta cos(k x) [m].
-fn amplitude(run: &Runner, k: f64, length: f64) -> f64 {
-    points(&run.solver).map(|x| (k * x.x).cos()).sum::<f64>() * SPACING * SPACING * 2.0 / length
+fn amplitude(solver: &Solver, k: f64, length: f64) -> f64 {
+    points(solver).map(|x| (k * x.x).cos()).sum::<f64>() * SPACING * SPACING * 2.0 / length
 }
 
 /// Period from the crossings of zero, and mean ln(A_k/A_(k+1)) from the extremes.

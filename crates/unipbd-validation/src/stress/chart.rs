@@ -15,10 +15,11 @@ pub type Surveyed<'a> = (&'a Map, Vec<Vec<Cell>>);
 /// The body of the section.
 pub fn section(maps: &[Surveyed<'_>]) -> String {
     let mut text = format!(
-        "Made by `cargo run --release -p unipbd-validation -- --map`. Each cell is a run with this many substeps per \
+        "Made by `cargo run --release -p unipbd-validation -- --map`, {}. Each cell is a run with this many substeps per \
          frame (`auto`: at most 64, in brackets what it took): its worst density error C, and by how much its energy \
          rose over that of the start where that is more than 0.5 %. All cells without a word are finite and \
-         contained; a word says what happened to the others.\n\n![worst C and growth of energy]({PICTURE})\n"
+         contained; a word says what happened to the others.\n\n![worst C and growth of energy]({PICTURE})\n",
+        crate::stamp::stamp()
     );
     for (map, rows) in maps {
         let _ = write!(text, "\n{}, by {}:\n\n| {} |", capital(map.setup), map.name, map.name);

@@ -1,7 +1,14 @@
-//! The two cases, the same for every solver, and how their compression is measured.
+//! The two cases of liquids, the same for every solver, and how their density errors are measured.
+
+mod python;
+mod salva;
+mod table;
+mod unipbd;
 
 use cpu_time::ProcessTime;
-use unipbd_validation::compression::Estimator;
+use unipbd_validation::compression::{Errors, Estimator};
+
+pub use table::sections;
 
 /// A block of liquid on a lattice of spacing `dx` in a tank from the origin.
 #[derive(Clone, Copy)]
@@ -15,9 +22,11 @@ pub struct Case {
 }
 
 /// Seconds between two looks at the positions.
-pub const LOOK: f64 = 0.1;
+const LOOK: f64 = 0.1;
 /// Radius of the estimate's kernel, in spacings.
 const REACH: f64 = 2.5;
+/// Gravity, downwards [m/s^2].
+const GRAVITY: f64 = 9.81;
 
 impl Case {
     /// A column twice as high as wide collapses.
@@ -32,17 +41,21 @@ impl Case {
         Case { name: "still tank", block: [1.0, 1.0], tank: [1.0, 2.0], dx, seconds }
     }
 
-    pub fn lattice(&self) -> Vec<[f64; 2]> {
+    fn lattice(&self) -> Vec<[f64; 2]> {
         let count = |length: f64| (length / self.dx).round() as usize;
         let (columns, rows) = (count(self.block[0]), count(self.block[1]));
         let at = |k: usize| [(k % columns) as f64 + 0.5, (k / columns) as f64 + 0.5].map(|x| x * self.dx);
         (0..columns * rows).map(at).collect()
     }
 
-    /// Mean compression, max(rho/rho0 - 1, 0), over the interior.
-    pub fn compression(&self, positions: &[[f64; 2]]) -> f64 {
-        let estimator = Estimator { spacing: self.dx, radius: REACH, tank: self.tank };
-        estimator.errors(positions).mean_compression()
+    /// Density errors of the interior.
+    fn errors(&self, positions: &[[f64; 2]]) -> Errors {
+        Estimator { spacing: self.dx, radius: REACH, tank: self.tank }.errors(positions)
+    }
+
+    /// Length of a step of the peers without substeps of their own [s].
+    fn step(&self) -> f64 {
+        (0.1 * self.dx).min(0.002)
     }
 }
 
@@ -52,28 +65,30 @@ pub struct Outcome {
     /// Processor time of the steps alone [s]: on one thread the wall-clock time of a machine that does nothing else.
     pub time: f64,
     pub steps: u64,
-    /// Compression at each look.
-    pub compression: Vec<f64>,
+    /// Density errors of all looks.
+    pub errors: Errors,
     /// Height of the centre of mass at the end [m].
     pub height: f64,
 }
 
 impl Outcome {
-    pub fn mean_compression(&self) -> f64 {
-        self.compression.iter().sum::<f64>() / self.compression.len().max(1) as f64
+    /// Whether another is quicker without larger errors, or better at no more cost.
+    fn is_beaten_by(&self, other: &Outcome) -> bool {
+        let (mine, theirs) = ((self.time, self.errors.mean()), (other.time, other.errors.mean()));
+        theirs.0 <= mine.0 && theirs.1 <= mine.1 && theirs != mine
     }
 }
 
 /// A solver that holds a case.
-pub trait Runs {
+trait Runs {
     /// Advances by its step, whose length it returns [s].
     fn step(&mut self) -> f64;
     fn positions(&self) -> Vec<[f64; 2]>;
 }
 
 /// Runs a case to its end. Only the steps are timed.
-pub fn run(case: &Case, solver: String, runs: &mut impl Runs) -> Outcome {
-    let mut outcome = Outcome { solver, time: 0.0, steps: 0, compression: Vec::new(), height: 0.0 };
+fn run(case: &Case, solver: String, runs: &mut impl Runs) -> Outcome {
+    let mut outcome = Outcome { solver, time: 0.0, steps: 0, errors: Errors::default(), height: 0.0 };
     let (mut time, mut next) = (0.0, LOOK);
     while time < case.seconds - 1e-9 {
         let begin = ProcessTime::now();
@@ -83,10 +98,13 @@ pub fn run(case: &Case, solver: String, runs: &mut impl Runs) -> Outcome {
         time += dt;
         if time >= next - 1e-9 {
             next += LOOK;
-            outcome.compression.push(case.compression(&runs.positions()));
+            outcome.errors = outcome.errors.and(case.errors(&runs.positions()));
         }
     }
-    let positions = runs.positions();
-    outcome.height = positions.iter().map(|x| x[1]).sum::<f64>() / positions.len() as f64;
+    outcome.height = mean_height(&runs.positions());
     outcome
+}
+
+fn mean_height(positions: &[[f64; 2]]) -> f64 {
+    positions.iter().map(|x| x[1]).sum::<f64>() / positions.len() as f64
 }

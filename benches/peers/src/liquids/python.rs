@@ -1,11 +1,13 @@
-//! Peers from the Python registry: each runs in its own process and writes where its particles are.
+//! Peers from the Python registry: each runs in its own process and writes where its particles are. Their scripts read
+//! their settings back.
 
 use std::path::Path;
 use std::process::Command;
 
 use serde_json::Value;
+use unipbd_validation::compression::Errors;
 
-use crate::case::{Case, LOOK, Outcome};
+use super::{Case, LOOK, Outcome, mean_height};
 
 /// Runs `script` of this crate's `python` folder; a reason where it could not.
 pub fn peer(case: &Case, script: &str, setting: &str) -> Result<Outcome, String> {
@@ -22,19 +24,21 @@ pub fn peer(case: &Case, script: &str, setting: &str) -> Result<Outcome, String>
     let found = text.lines().rev().find_map(|line| serde_json::from_str::<Value>(line).ok().filter(Value::is_object));
     let Some(found) = found else {
         let errors = String::from_utf8_lossy(&output.stderr);
-        return Err(errors.lines().last().unwrap_or("it said nothing").to_owned());
+        let said = errors.lines().last().unwrap_or("it said nothing");
+        return Err(format!("{script} {setting}: {said} ({})", output.status));
     };
-    let number = |value: &Value| value.as_f64().unwrap_or(0.0);
-    let point = |value: &Value| [number(&value[0]), number(&value[1])];
-    let points =
-        |value: &Value| value.as_array().map_or_else(Vec::new, |list| list.iter().map(point).collect::<Vec<_>>());
-    let looks: Vec<_> = found["looks"].as_array().map_or_else(Vec::new, |looks| looks.iter().map(points).collect());
-    let last = looks.last().ok_or("it never looked")?;
-    Ok(Outcome {
-        solver: found["solver"].as_str().unwrap_or(script).to_owned(),
-        time: number(&found["time"]),
-        steps: number(&found["steps"]) as u64,
-        height: last.iter().map(|x| x[1]).sum::<f64>() / last.len() as f64,
-        compression: looks.iter().map(|look| case.compression(look)).collect(),
+    outcome(case, &found).ok_or_else(|| format!("{script} {setting}: no figures in {found:.60}"))
+}
+
+fn outcome(case: &Case, found: &Value) -> Option<Outcome> {
+    let point = |value: &Value| Some([value[0].as_f64()?, value[1].as_f64()?]);
+    let points = |value: &Value| value.as_array()?.iter().map(point).collect::<Option<Vec<_>>>();
+    let looks: Vec<_> = found["looks"].as_array()?.iter().map(points).collect::<Option<_>>()?;
+    Some(Outcome {
+        solver: found["solver"].as_str()?.to_owned(),
+        time: found["time"].as_f64()?,
+        steps: found["steps"].as_u64()?,
+        height: mean_height(looks.last()?),
+        errors: looks.iter().map(|look| case.errors(look)).fold(Errors::default(), Errors::and),
     })
 }

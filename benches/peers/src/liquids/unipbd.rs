@@ -1,0 +1,65 @@
+//! unipbd on the cases of [`Case`].
+
+use unipbd_core::scene::{Block, Liquid, Scene, SolverSettings, Tank};
+use unipbd_core::{BuildOptions, Solver};
+
+use super::{Case, GRAVITY, Outcome, Runs, run};
+use crate::readback::ReadBack;
+
+/// Frames per second.
+const FPS: f64 = 60.0;
+
+struct Unipbd(Solver);
+
+impl Runs for Unipbd {
+    fn step(&mut self) -> f64 {
+        self.0.step_frame().expect("the case does not diverge");
+        self.0.frame_time()
+    }
+    fn positions(&self) -> Vec<[f64; 2]> {
+        self.0.positions().iter().map(|x| [f64::from(x.x), f64::from(x.y)]).collect()
+    }
+}
+
+/// A setting of unipbd.
+#[derive(Clone, Copy)]
+pub struct Setting {
+    /// Kernel radius over the spacing.
+    pub radius: f64,
+    /// Target compression: it takes as many substeps as that wants.
+    pub target: f64,
+    /// Whether a coarse projection goes before that of the particles.
+    pub coarse: bool,
+}
+
+impl Setting {
+    fn name(self) -> String {
+        let name = if self.coarse { "unipbd, coarse projection" } else { "unipbd" };
+        format!("{name}, h = {} dx, target {} %", self.radius, 100.0 * self.target)
+    }
+}
+
+/// unipbd with a setting, on one thread.
+pub fn unipbd(case: &Case, setting: Setting) -> Result<Outcome, String> {
+    let Setting { radius, target, coarse } = setting;
+    let solver = SolverSettings { kernel_radius: radius, target_compression: target, ..SolverSettings::default() };
+    let scene = Scene {
+        spacing: case.dx,
+        gravity: [0.0, -GRAVITY],
+        fps: FPS,
+        liquid: vec![Liquid::new("water", 1000.0)],
+        block: vec![Block::new("water", [0.0, 0.0], case.block)],
+        tank: vec![Tank::new([0.0, 0.0], case.tank)],
+        solver: SolverSettings { coarse_projection: if coarse { 3 } else { 0 }, ..solver },
+        ..Scene::default()
+    };
+    let options = BuildOptions { threads: Some(1), ..BuildOptions::default() };
+    let solver = scene.build(options).map_err(|problems| problems.to_string())?;
+    ReadBack::default()
+        .number("spacing", case.dx, solver.spacing())
+        .number("frame", 1.0 / FPS, solver.frame_time())
+        .same("particles", case.lattice().len(), solver.positions().len())
+        .same("threads", 1, solver.threads())
+        .done()?;
+    Ok(run(case, setting.name(), &mut Unipbd(solver)))
+}
