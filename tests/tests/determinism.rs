@@ -41,7 +41,7 @@ const SPLASH: &str = r#"
 spacing = 0.05
 [[liquid]]
 name = "water"
-viscosity = 0.05
+xsph = 0.05
 [[block]]
 material = "water"
 min = [0.0, 0.0]

@@ -49,6 +49,12 @@ pub fn scene_schema() -> String {
     scene_file::schema().to_string()
 }
 
+/// The hint for a key that the format no longer has.
+#[pyfunction]
+pub fn renamed_key_hint(key: &str) -> Option<String> {
+    scene_file::renamed_key_hint(key)
+}
+
 /// A scene with nothing in it.
 #[pyfunction]
 pub fn default_scene(py: Python<'_>) -> PyResult<Bound<'_, PyDict>> {

@@ -7,6 +7,7 @@
 
 mod diagnostic;
 mod overrides;
+mod renamed;
 mod repair;
 mod schema;
 mod source;
@@ -24,6 +25,7 @@ use unipbd_core::scene::{KeyPath, Problem, Scene};
 
 pub use diagnostic::{Diagnostic, Origin, SceneFileError};
 pub use overrides::{InvalidOverride, Override};
+pub use renamed::renamed_key_hint;
 pub use schema::schema;
 
 use repair::Repair;

@@ -8,8 +8,8 @@ mod waves;
 use crate::constraints::{Adhesion, ConstraintGroup, Density, DensitySettings, MassDensity, ShapeMatching};
 use crate::coupling::RigidBodies;
 use crate::effects::{
-    Baroclinic, Cohesion, Conduction, Drag, Effect, Heating, QuadraticDrag, ShearViscosity, SmokeAdvection, Viscosity,
-    VorticityConfinement,
+    Baroclinic, Cohesion, Conduction, Drag, Effect, Heating, QuadraticDrag, ShearViscosity, SmokeAdvection,
+    VorticityConfinement, Xsph,
 };
 use crate::math::{Vector, Vector64, real, vector};
 use crate::neighbors::{ListCost, Neighbors, SearchPositions};
@@ -146,8 +146,8 @@ fn groups(
 
 fn effects(scene: &Scene, seed: u64) -> Vec<Box<dyn Effect>> {
     let mut effects: Vec<Box<dyn Effect>> = Vec::new();
-    if let Some(viscosity) = Viscosity::new(scene) {
-        effects.push(Box::new(viscosity));
+    if let Some(xsph) = Xsph::new(scene) {
+        effects.push(Box::new(xsph));
     }
     if let Some(viscosity) = ShearViscosity::new(scene) {
         effects.push(Box::new(viscosity));

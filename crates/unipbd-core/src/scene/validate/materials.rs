@@ -6,7 +6,7 @@ use super::checker::{Allowed, Checker};
 use crate::phase::{MaterialIndex, Phase};
 use crate::scene::{KeyPath, Liquid, MaterialRef, Scene, nearest};
 
-const VISCOSITY_HINT: &str = "the fraction of velocity differences smoothed per substep";
+const XSPH_HINT: &str = "the fraction of velocity differences smoothed per substep";
 const NU_HINT: &str = "in m^2/s, such as 1e-6 for water; 0 is none";
 const QUADRATIC_HINT: &str = "in 1/m: a particle alone falls at sqrt(g/coefficient)";
 const DENSITY_HINT: &str = "mass per area in kg/m^2, such as 1000.0 for water or 1.2 for air";
@@ -16,7 +16,7 @@ pub(super) fn check(checker: &mut Checker) {
         let path = KeyPath::entry("liquid", index);
         checker.range(path.then("density"), liquid.density, Allowed::Positive, DENSITY_HINT);
         check_mass(checker, &path, liquid.particle_mass);
-        checker.range(path.then("viscosity"), liquid.viscosity, Allowed::Between(0.0, 1.0), VISCOSITY_HINT);
+        checker.range(path.then("xsph"), liquid.xsph, Allowed::Between(0.0, 1.0), XSPH_HINT);
         let nu = liquid.kinematic_viscosity;
         checker.range(path.then("kinematic_viscosity"), nu, Allowed::NotNegative, NU_HINT);
         checker.range(path.then("cohesion"), liquid.cohesion, Allowed::NotNegative, "an acceleration in m/s^2");
@@ -61,7 +61,7 @@ fn check_gases(checker: &mut Checker) {
         checker.range(path.then("drag"), gas.drag, Allowed::NotNegative, "a rate in 1/s; 0 is no drag");
         checker.range(path.then("quadratic_drag"), gas.quadratic_drag, Allowed::NotNegative, QUADRATIC_HINT);
         checker.range(path.then("conductivity"), gas.conductivity, Allowed::NotNegative, "a diffusivity in m^2/s");
-        checker.range(path.then("viscosity"), gas.viscosity, Allowed::Between(0.0, 1.0), VISCOSITY_HINT);
+        checker.range(path.then("xsph"), gas.xsph, Allowed::Between(0.0, 1.0), XSPH_HINT);
         checker.range(path.then("kinematic_viscosity"), gas.kinematic_viscosity, Allowed::NotNegative, NU_HINT);
         check_lifetime(checker, &path, gas.lifetime);
         if let Some(radius) = gas.keep_radius {
