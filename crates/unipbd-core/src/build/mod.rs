@@ -8,7 +8,7 @@ mod waves;
 use crate::constraints::{Adhesion, ConstraintGroup, Density, DensitySettings, MassDensity, ShapeMatching};
 use crate::coupling::RigidBodies;
 use crate::effects::{
-    Baroclinic, Cohesion, Conduction, Drag, Effect, Heating, QuadraticDrag, ShearViscosity, SmokeAdvection,
+    Baroclinic, Cohesion, Conduction, Drag, DragLaw, Effect, Heating, ShearViscosity, SmokeAdvection,
     VorticityConfinement, Xsph,
 };
 use crate::math::{Vector, Vector64, real, vector};
@@ -152,11 +152,10 @@ fn effects(scene: &Scene, seed: u64) -> Vec<Box<dyn Effect>> {
     if let Some(viscosity) = ShearViscosity::new(scene) {
         effects.push(Box::new(viscosity));
     }
-    if let Some(drag) = Drag::new(scene, Rng::new(seed, WIND_STREAM).state()) {
-        effects.push(Box::new(drag));
-    }
-    if let Some(drag) = QuadraticDrag::new(scene, Rng::new(seed, WIND_STREAM).state()) {
-        effects.push(Box::new(drag));
+    for law in [DragLaw::Thin, DragLaw::Quadratic] {
+        if let Some(drag) = Drag::new(scene, law, Rng::new(seed, WIND_STREAM).state()) {
+            effects.push(Box::new(drag));
+        }
     }
     if let Some(cohesion) = Cohesion::new(scene) {
         effects.push(Box::new(cohesion));

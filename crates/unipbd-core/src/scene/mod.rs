@@ -46,5 +46,5 @@ pub use walls::{HalfPlane, Obstacle, Side, Slip, Tank};
 pub use waves::Wave;
 
 pub(crate) use layout::{block_points, disc_points};
-pub(crate) use substep_law::SubstepLaw;
+pub(crate) use substep_law::{COURANT, SubstepLaw};
 pub(crate) use validate::FARTHEST;
