@@ -68,7 +68,7 @@ pub fn load(path: impl AsRef<Path>, overrides: &[Override]) -> Result<LoadedScen
 
 /// Reads a scene from text; `file_name` stands in messages.
 pub fn parse(text: &str, file_name: &str, overrides: &[Override]) -> Result<LoadedScene, SceneFileError> {
-    let sources = Sources::new(file_name, text, overrides);
+    let sources = Sources::new(file_name, text, overrides.iter().map(Override::text));
     let scene = read(&sources, overrides).map_err(|faults| sources.error(faults))?;
     Ok(LoadedScene {
         scene,
