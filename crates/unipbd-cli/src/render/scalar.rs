@@ -1,8 +1,8 @@
 use unipbd_core::phase::Phase;
 
 use super::color::ColorMap;
-use super::error::RenderError;
 use super::color_by::ColorBy;
+use super::error::RenderError;
 use super::options::Range;
 use crate::snapshot::Snapshot;
 
