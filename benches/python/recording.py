@@ -18,7 +18,7 @@ fps = 60
 duration = {seconds}
 [[liquid]]
 name = "water"
-viscosity = 0.01
+xsph = 0.01
 [[block]]
 material = "water"
 min = [0.0, 0.0]

@@ -28,7 +28,7 @@ pub fn pool(particles: usize) -> Scene {
 }
 
 fn water() -> Liquid {
-    Liquid { viscosity: 0.01, ..Liquid::new("water", 1000.0) }
+    Liquid { xsph: 0.01, ..Liquid::new("water", 1000.0) }
 }
 
 /// A solver of a scene on this many threads.

@@ -15,7 +15,7 @@ pub fn measure(frames: u32) -> Option<[f64; 2]> {
     let settings = |sleep| SolverSettings { sleep, substeps: Substeps::Fixed(8), ..SolverSettings::default() };
     let scene = |sleep| Scene {
         spacing: SPACING,
-        liquid: vec![Liquid { viscosity: 0.1, ..Liquid::new("water", 1000.0) }],
+        liquid: vec![Liquid { xsph: 0.1, ..Liquid::new("water", 1000.0) }],
         block: vec![Block::new("water", [0.0, 0.0], [4.0, 1.0])],
         tank: vec![Tank::new([0.0, 0.0], [4.0, 2.0])],
         solver: settings(sleep),

@@ -137,7 +137,7 @@ def test_hooks_push_and_drive_bodies() -> None:
 
 def test_the_floor_of_a_named_tank_carries_the_water() -> None:
     scene = up.Scene(spacing=0.1)
-    scene.add_liquid("water", viscosity=0.05)
+    scene.add_liquid("water", xsph=0.05)
     scene.add_block("water", min=(0, 0), max=(1, 1))
     scene.add_tank(min=(0, 0), max=(1, 2), name="tank", open=["top"])
     sim = scene.build(seed=1)

@@ -73,7 +73,7 @@ def test_the_keys_of_a_scene_are_those_that_editors_know() -> None:
     assert known == written, "unipbd/_keys.py lists the top-level keys of a scene file"
     described = up.Scene().describe().splitlines()
     assert len(described) == len(known) and all(": " in line for line in described)
-    assert "viscosity:" in up.Scene().describe("liquid") and "substeps:" in up.Scene().describe("solver")
+    assert "xsph:" in up.Scene().describe("liquid") and "substeps:" in up.Scene().describe("solver")
 
 
 def test_the_examples_of_the_docstrings_run(tmp_path: Any, monkeypatch: pytest.MonkeyPatch) -> None:

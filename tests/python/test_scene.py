@@ -39,14 +39,16 @@ def test_the_description_is_read_and_edited_by_attribute() -> None:
 
 
 def test_a_misspelt_key_is_noticed_where_it_is_written(scene: up.Scene) -> None:
-    with pytest.raises(AttributeError, match="did you mean 'viscosity'"):
-        scene.materials["water"].viscosty = 0.1
+    with pytest.raises(AttributeError, match="did you mean 'cohesion'"):
+        scene.materials["water"].cohesoin = 0.1
     with pytest.raises(AttributeError, match="did you mean 'spacing'"):
         scene.spacng = 0.1
     with pytest.raises(AttributeError):
         scene.add_liquid("oil", densty=800.0)
     with pytest.raises(KeyError, match="there is 'water'"):
         scene.materials["wine"]
+    with pytest.raises(AttributeError, match="write `xsph` or `kinematic_viscosity`"):
+        scene.materials["water"].viscosity = 0.1
     assert scene == pool()
 
 

@@ -20,7 +20,7 @@ pub fn load(text: &str) -> LoadedScene {
 /// A scene written as TOML, without its text.
 #[track_caller]
 pub fn scene(text: &str) -> Scene {
-    load(text).scene
+    load(text).scene.into_scene()
 }
 
 /// A scene of `scenes/`.

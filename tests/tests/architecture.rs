@@ -133,14 +133,8 @@ fn the_step_names_no_concrete_constraint() {
 
 #[test]
 fn only_the_builder_makes_density_groups_and_effects() {
-    let makers = [
-        "Density::new",
-        "Drag::new",
-        "Viscosity::new",
-        "Conduction::new",
-        "VorticityConfinement::new",
-        "Baroclinic::new",
-    ];
+    let makers =
+        ["Density::new", "Drag::new", "Xsph::new", "Conduction::new", "VorticityConfinement::new", "Baroclinic::new"];
     for path in files(&core()) {
         let code = code(&path);
         for maker in makers.into_iter().filter(|maker| code.contains(maker)) {

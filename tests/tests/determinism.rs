@@ -41,7 +41,7 @@ const SPLASH: &str = r#"
 spacing = 0.05
 [[liquid]]
 name = "water"
-viscosity = 0.05
+xsph = 0.05
 [[block]]
 material = "water"
 min = [0.0, 0.0]
@@ -94,7 +94,7 @@ fn the_state_is_the_same_on_any_number_of_threads() {
 /// The hash after some frames with every column of every frame recorded.
 fn hash_recorded(loaded: &LoadedScene, frames: u64) -> u64 {
     let options = BuildOptions { threads: Some(2), seed: None };
-    let mut simulation = Simulation::new(&loaded.scene, options).expect("the scene is valid");
+    let mut simulation = Simulation::new(&loaded.scene, options);
     let header = Header {
         setting: simulation.setting(&loaded.scene, &loaded.path),
         scene_text: loaded.text.clone(),
@@ -128,7 +128,7 @@ fn recording_changes_nothing() {
 fn the_seed_matters_where_anything_is_random() {
     let hash = |seed: u64| {
         let options = BuildOptions { threads: Some(1), seed: Some(seed) };
-        let mut solver = shipped("open_gas.toml").scene.build(options).expect("the scene is valid");
+        let mut solver = shipped("open_gas.toml").scene.build(options);
         run(&mut solver, 10, |_| ());
         solver.state_hash()
     };

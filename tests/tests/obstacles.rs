@@ -13,7 +13,7 @@ spacing = 0.05
 substeps = 8
 [[liquid]]
 name = "water"
-viscosity = 0.05
+xsph = 0.05
 [[block]]
 material = "water"
 min = [-0.5, 0.0]

@@ -97,7 +97,7 @@ fn shapes_that_collide_keep_their_momenta() {
 #[test]
 fn a_shape_floats_at_its_draft() {
     let mut solver = boxed(
-        "[[liquid]]\nname = 'water'\nviscosity = 0.05\n[[block]]\nmaterial = 'water'\nmin = [0, 0]\nmax = [4, 1.2]\n\
+        "[[liquid]]\nname = 'water'\nxsph = 0.05\n[[block]]\nmaterial = 'water'\nmin = [0, 0]\nmax = [4, 1.2]\n\
          [[tank]]\nmin = [0, 0]\nmax = [4, 3]\nopen = ['top']\n\
          [[body]]\nsolver = 'shape_matching'\nsize = [1.2, 0.4]\nposition = [2, 1.3]\ndensity = 500",
     );

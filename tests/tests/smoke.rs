@@ -123,7 +123,7 @@ fn weight(distance: f64, radius: f64) -> f64 {
 
 #[test]
 fn smoke_has_the_mean_velocity_of_the_carrier_around_it() {
-    let mut scene = shipped("open_gas.toml").scene;
+    let mut scene = shipped("open_gas.toml").scene.into_scene();
     scene.solver.settle_substeps = Some(0);
     let radius = scene.solver.kernel_radius * scene.spacing;
     let mut solver = build(&scene, 2);

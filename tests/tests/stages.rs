@@ -60,7 +60,7 @@ fn water_has_neighbours_and_one_projection() {
 
 #[test]
 fn viscous_water_adds_the_effects() {
-    let viscous = WATER.replace("name = \"water\"\n[[block", "name = \"water\"\nviscosity = 0.1\n[[block");
+    let viscous = WATER.replace("name = \"water\"\n[[block", "name = \"water\"\nxsph = 0.1\n[[block");
     assert_stages(
         &viscous,
         &[Predict, FindNeighbors, BeginGroups, Project, StoreDensity, UpdateVelocities, RefreshNeighbors, Effects],

@@ -17,7 +17,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         return Err("usage: run_scene SCENE.toml FRAMES".into());
     };
     let loaded = scene_file::load(path, &[])?;
-    let mut solver = loaded.scene.build(BuildOptions::default())?;
+    let mut solver = loaded.scene.build(BuildOptions::default());
     for _ in 0..frames.parse::<u32>()? {
         solver.step_frame()?;
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use unipbd_core::math::{Real, Vector};
-use unipbd_core::scene::Scene;
+use unipbd_core::scene::{CheckedScene, Scene};
 use unipbd_core::{BuildOptions, FrameReport, Solver, SolverError};
 
 use crate::record::Fields;
@@ -19,8 +19,8 @@ pub struct Simulation {
 
 impl Simulation {
     /// Builds the solver of a scene.
-    pub fn new(scene: &Scene, options: BuildOptions) -> Result<Self, unipbd_core::scene::Problems> {
-        Ok(Simulation { solver: scene.build(options)?, frames: frame_count(scene) })
+    pub fn new(scene: &CheckedScene, options: BuildOptions) -> Self {
+        Simulation { solver: scene.build(options), frames: frame_count(scene) }
     }
 
     /// Advances by a frame; `None` at the end of the scene.

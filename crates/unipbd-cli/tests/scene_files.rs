@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use unipbd_cli::scene_file::{self, Origin, Override, SceneFileError};
+use unipbd_core::rng::Rng;
 use unipbd_core::scene::Substeps;
 
 fn shipped_scenes() -> Vec<PathBuf> {
@@ -131,32 +132,23 @@ fn schema_refuses_unknown_keys_and_has_no_null() {
     assert!(!schema.to_string().contains("\"null\""));
 }
 
-/// Numbers of the splitmix64 sequence (Steele, Lea and Flood 2014).
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, bound: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut value = self.0;
-        value = (value ^ (value >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        value = (value ^ (value >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((value ^ (value >> 31)) % bound as u64) as usize
-    }
+fn below(random: &mut Rng, bound: usize) -> usize {
+    (random.next_u64() % bound as u64) as usize
 }
 
 /// Changes a few bytes: replaces, removes, doubles, or moves a stretch from elsewhere.
-fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
+fn mutate(bytes: &mut Vec<u8>, random: &mut Rng) {
     const TELLING: &[u8] = b"[]{}=\".,#-+eE019 \n\t\\'\0\xff\xc3_:nai";
-    for _ in 0..=random.below(4) {
-        let at = random.below(bytes.len());
-        match random.below(5) {
-            0 => bytes[at] = TELLING[random.below(TELLING.len())],
+    for _ in 0..=below(random, 4) {
+        let at = below(random, bytes.len());
+        match below(random, 5) {
+            0 => bytes[at] = TELLING[below(random, TELLING.len())],
             1 => drop(bytes.remove(at)),
-            2 => bytes.insert(at, TELLING[random.below(TELLING.len())]),
-            3 => bytes[at] ^= 1 << random.below(8),
+            2 => bytes.insert(at, TELLING[below(random, TELLING.len())]),
+            3 => bytes[at] ^= 1 << below(random, 8),
             _ => {
-                let from = random.below(bytes.len());
-                let to = (from + random.below(60)).min(bytes.len());
+                let from = below(random, bytes.len());
+                let to = (from + below(random, 60)).min(bytes.len());
                 let stretch = bytes[from..to].to_vec();
                 bytes.splice(at..at, stretch);
             }
@@ -166,7 +158,7 @@ fn mutate(bytes: &mut Vec<u8>, random: &mut Random) {
 
 #[test]
 fn no_damage_to_a_scene_makes_the_reader_panic() {
-    let mut random = Random(20_24);
+    let mut random = Rng::from_state(20_24);
     let file = tempfile::NamedTempFile::new().unwrap();
     let (mut faulty, mut fine) = (0, 0);
     for path in shipped_scenes() {

@@ -30,7 +30,8 @@ pub mod periodic;
 pub mod phase;
 mod pressure_grid;
 pub mod rigid;
-mod rng;
+#[doc(hidden)]
+pub mod rng;
 pub mod rows;
 pub mod scene;
 pub mod shapes;

@@ -2,42 +2,45 @@
 
 /// SplitMix64 (Steele, Lea & Flood 2014).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Rng {
+pub struct Rng {
     state: u64,
 }
 
 impl Rng {
     /// A generator for one purpose: streams of different purposes do not overlap in practice.
-    pub(crate) fn new(seed: u64, purpose: u64) -> Self {
+    pub fn new(seed: u64, purpose: u64) -> Self {
         Rng { state: mix(seed ^ mix(purpose.wrapping_add(0x9E37_79B9_7F4A_7C15))) }
     }
 
-    pub(crate) fn from_state(state: u64) -> Self {
+    /// A generator in this state.
+    pub fn from_state(state: u64) -> Self {
         Rng { state }
     }
 
-    pub(crate) fn state(self) -> u64 {
+    /// The whole state.
+    pub fn state(self) -> u64 {
         self.state
     }
 
-    pub(crate) fn next_u64(&mut self) -> u64 {
+    /// The next number, uniform in all 64 bits.
+    pub fn next_u64(&mut self) -> u64 {
         self.state = self.state.wrapping_add(0x9E37_79B9_7F4A_7C15);
         mix(self.state)
     }
 
     /// Uniform in [0, 1).
-    pub(crate) fn unit(&mut self) -> f64 {
+    pub fn unit(&mut self) -> f64 {
         (self.next_u64() >> 11) as f64 / (1_u64 << 53) as f64
     }
 
     /// Uniform in [-1, 1).
-    pub(crate) fn signed_unit(&mut self) -> f64 {
+    pub fn signed_unit(&mut self) -> f64 {
         2.0 * self.unit() - 1.0
     }
 }
 
 /// The finaliser of SplitMix64: every input bit reaches every output bit.
-pub(crate) fn mix(mut z: u64) -> u64 {
+pub fn mix(mut z: u64) -> u64 {
     z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
     z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
     z ^ (z >> 31)

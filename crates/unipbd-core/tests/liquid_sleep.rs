@@ -11,7 +11,7 @@ fn pool(wide: f64, deep: f64, sleep: bool) -> Scene {
     let (width, depth) = (wide * SPACING, deep * SPACING);
     Scene {
         spacing: SPACING,
-        liquid: vec![Liquid { viscosity: 0.05, ..Liquid::new("water", 1000.0) }],
+        liquid: vec![Liquid { xsph: 0.05, ..Liquid::new("water", 1000.0) }],
         block: vec![Block::new("water", [0.0, 0.0], [width, depth])],
         tank: vec![Tank::new([0.0, 0.0], [width, depth + 4.0])],
         solver: SolverSettings { sleep, substeps: Substeps::Fixed(8), ..SolverSettings::default() },

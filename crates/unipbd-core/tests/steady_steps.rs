@@ -57,7 +57,7 @@ fn allocations(scene: &Scene, before: u64, frames: u64) -> u64 {
 
 fn pool() -> Scene {
     Scene {
-        liquid: vec![Liquid { viscosity: 0.01, ..Liquid::new("water", 1000.0) }],
+        liquid: vec![Liquid { xsph: 0.01, ..Liquid::new("water", 1000.0) }],
         block: vec![Block::new("water", [0.0, 0.0], [3.0, 2.0])],
         tank: vec![Tank::new([0.0, 0.0], [3.0, 4.0])],
         solver: fixed(8),
@@ -89,7 +89,7 @@ fn gas_with_smoke_steps_without_allocating() {
         drag: 10.0,
         vorticity: 1.0,
         conductivity: 0.001,
-        viscosity: 0.01,
+        xsph: 0.01,
         keep_radius: Some(20.0),
         lifetime: Some(50.0),
         ..Gas::default()
@@ -134,8 +134,8 @@ fn a_heap_of_bodies_allocates_only_where_pairs_are_sought_anew() {
 
 #[test]
 fn a_pool_that_sleeps_and_one_that_waits_for_it_step_without_allocating() {
-    let sleepy = |viscosity| Scene {
-        liquid: vec![Liquid { viscosity, ..Liquid::new("water", 1000.0) }],
+    let sleepy = |xsph| Scene {
+        liquid: vec![Liquid { xsph, ..Liquid::new("water", 1000.0) }],
         solver: SolverSettings { sleep: true, ..fixed(8) },
         ..pool()
     };

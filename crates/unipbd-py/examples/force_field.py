@@ -12,7 +12,7 @@ import unipbd as up
 
 def main(path: str = "force_field.png") -> None:
     scene = up.Scene(name="Whirl", spacing=0.05, gravity=(0, 0), duration=1.0)
-    scene.add_liquid("water", viscosity=0.02)
+    scene.add_liquid("water", xsph=0.02)
     scene.add_disc("water", center=(0, 0), radius=0.8)
     sim = scene.build(seed=1)
 

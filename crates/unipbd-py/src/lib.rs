@@ -40,6 +40,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(scene::check_scene, module)?)?;
     module.add_function(wrap_pyfunction!(scene::scene_to_toml, module)?)?;
     module.add_function(wrap_pyfunction!(scene::scene_schema, module)?)?;
+    module.add_function(wrap_pyfunction!(scene::renamed_key_hint, module)?)?;
     module.add_function(wrap_pyfunction!(scene::default_scene, module)?)?;
     module.add_function(wrap_pyfunction!(scene::estimate_scene, module)?)?;
     module.add_function(wrap_pyfunction!(command::run_command, module)?)?;

@@ -7,7 +7,7 @@ use pyo3::types::PyDict;
 use serde::Deserialize;
 use toml::{Table, Value};
 use unipbd_cli::scene_file::{self, SceneFileError};
-use unipbd_core::scene::Scene;
+use unipbd_core::scene::{CheckedScene, Scene};
 
 use crate::convert;
 use crate::errors::{self, Written};
@@ -33,7 +33,8 @@ pub fn load_scene<'py>(py: Python<'py>, path: PathBuf) -> PyResult<(Bound<'py, P
 /// The description with all defaults; raises `SceneError` where it makes no scene.
 #[pyfunction]
 pub fn check_scene<'py>(py: Python<'py>, description: &Bound<'py, PyDict>) -> PyResult<Bound<'py, PyDict>> {
-    to_dict(py, &from_dict(py, description)?)
+    let scene = from_dict(py, description)?;
+    to_dict(py, &scene)
 }
 
 /// The description as TOML text.
@@ -47,6 +48,12 @@ pub fn scene_to_toml(py: Python<'_>, description: &Bound<'_, PyDict>) -> PyResul
 #[pyfunction]
 pub fn scene_schema() -> String {
     scene_file::schema().to_string()
+}
+
+/// The hint for a key that the format no longer has.
+#[pyfunction]
+pub fn renamed_key_hint(key: &str) -> Option<String> {
+    scene_file::renamed_key_hint(key)
 }
 
 /// A scene with nothing in it.
@@ -75,9 +82,9 @@ fn to_dict<'py>(py: Python<'py>, scene: &Scene) -> PyResult<Bound<'py, PyDict>> 
 }
 
 /// The scene of a description, free of problems.
-pub fn from_dict(py: Python<'_>, description: &Bound<'_, PyDict>) -> PyResult<Scene> {
-    let scene = read(py, description)?;
-    if scene.validate().0.is_empty() { Ok(scene) } else { Err(explain(py, convert::table(description)?)) }
+pub fn from_dict(py: Python<'_>, description: &Bound<'_, PyDict>) -> PyResult<CheckedScene> {
+    let checked = read(py, description)?.check();
+    checked.or_else(|_| Err(explain(py, convert::table(description)?)))
 }
 
 /// The scene of a description that may still make no sense.

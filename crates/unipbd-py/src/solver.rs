@@ -53,13 +53,15 @@ impl Solver {
         settled: bool,
     ) -> PyResult<Self> {
         let scene = scene::from_dict(py, description)?;
-        let mut build = scene.clone();
-        if settled {
-            build.solver.settle_substeps = Some(0);
-        }
         let options = BuildOptions { threads, seed };
-        let running = py.detach(|| Simulation::new(&build, options));
-        let running = running.map_err(|problems| errors::other(py, &problems.to_string()))?;
+        let running = if settled {
+            let mut build = scene.clone().into_scene();
+            build.solver.settle_substeps = Some(0);
+            let build = build.check().map_err(|problems| errors::other(py, &problems.to_string()))?;
+            py.detach(|| Simulation::new(&build, options))
+        } else {
+            py.detach(|| Simulation::new(&scene, options))
+        };
         let world = World {
             running,
             scene,

@@ -6,7 +6,7 @@ use pyo3::prelude::*;
 use unipbd_cli::simulation::Simulation;
 use unipbd_cli::snapshot::Setting;
 use unipbd_core::observe::{Event, Severity};
-use unipbd_core::scene::Scene;
+use unipbd_core::scene::CheckedScene;
 
 use crate::group::Failure;
 use crate::{errors, order};
@@ -14,7 +14,7 @@ use crate::{errors, order};
 /// A run and what belongs to it.
 pub struct World {
     pub running: Simulation,
-    pub scene: Scene,
+    pub scene: CheckedScene,
     /// Events that no log has yet.
     pub unrecorded: Vec<Event>,
     pub has_groups: bool,

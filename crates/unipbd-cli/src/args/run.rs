@@ -13,7 +13,7 @@ const AFTER_HELP: &str = "\
 Examples:
   unipbd run scenes/dam_break.toml
   unipbd run scenes/open_gas.toml --threads 4 --duration 2 -o short.mcap --force
-  unipbd run my_scene.toml --set liquid.0.viscosity=0.02 --set solver.substeps=16
+  unipbd run my_scene.toml --set liquid.0.xsph=0.02 --set solver.substeps=16
   unipbd run my_scene.toml --stop-on 'density_error>0.05' --stop-on 'time>1.5'
 
 Exit codes: 0 done, 1 input or output, 2 arguments, 3 scene, 4 diverged, 5 --stop-on met or

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 use serde_json::{Value, json};
 use unipbd_core::{BuildOptions, SolverError};
 
-use super::scene::{build, load};
+use super::scene::load;
 use crate::args::BenchArgs;
 use crate::exit::{Exit, Failure};
 use crate::interrupt;
@@ -84,7 +84,7 @@ struct Timed {
 
 impl Timed {
     fn new(loaded: &LoadedScene, threads: usize) -> Result<Self, Failure> {
-        let simulation = build(loaded, BuildOptions { threads: Some(threads), seed: None })?;
+        let simulation = Simulation::new(&loaded.scene, BuildOptions { threads: Some(threads), seed: None });
         Ok(Timed {
             simulation,
             threads,

@@ -6,28 +6,27 @@ use unipbd_core::scene::{Scene, Substeps};
 
 use super::estimate::{Cost, emitted, particles};
 use super::info::bodies;
-use super::scene::{build, load};
+use super::scene::read;
 use crate::args::CheckArgs;
 use crate::exit::{Exit, Failure};
 use crate::report::format::{bytes, count, duration, percent, plural};
 use crate::report::{Console, Form};
-use crate::scene_file::{self, Diagnostic, Origin};
+use crate::scene_file::{Diagnostic, Origin};
 use crate::simulation::{Simulation, title};
 
 pub(super) fn check(arguments: &CheckArgs, console: Console) -> Result<Exit, Failure> {
-    if console.form == Form::Json
-        && let Err(error) = scene_file::load(&arguments.scene, &arguments.changes.all()?)
-        && !error.problems().is_empty()
-    {
-        console.object(&json!({
-            "type": "check",
-            "valid": false,
-            "problems": error.problems().iter().map(problem).collect::<Vec<_>>(),
-        }))?;
-        return Ok(Exit::InvalidScene);
-    }
-    let loaded = load(&arguments.scene, &arguments.changes)?;
-    let mut simulation = build(&loaded, BuildOptions { threads: arguments.threads, seed: None })?;
+    let loaded = match read(&arguments.scene, &arguments.changes)? {
+        Err(error) if console.form == Form::Json && !error.problems().is_empty() => {
+            console.object(&json!({
+                "type": "check",
+                "valid": false,
+                "problems": error.problems().iter().map(problem).collect::<Vec<_>>(),
+            }))?;
+            return Ok(Exit::InvalidScene);
+        }
+        read => read?,
+    };
+    let mut simulation = Simulation::new(&loaded.scene, BuildOptions { threads: arguments.threads, seed: None });
     let cost = Cost::of(&loaded.scene, &mut simulation);
     match console.form {
         Form::Json => console.object(&object(&title(&loaded.scene, &loaded.path), &loaded.scene, &cost))?,

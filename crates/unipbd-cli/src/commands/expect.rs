@@ -3,14 +3,15 @@
 use std::path::Path;
 use std::time::Instant;
 
-use crate::expect::Watch;
 use serde_json::json;
 use unipbd_core::BuildOptions;
 
-use super::scene::{build, load};
+use super::scene::load;
 use crate::args::ExpectArgs;
 use crate::exit::{Exit, Failure};
+use crate::expect::Watch;
 use crate::report::{Console, Form};
+use crate::simulation::Simulation;
 
 /// What came of one scene.
 struct Verdict {
@@ -35,7 +36,7 @@ pub(super) fn expect(arguments: &ExpectArgs, console: Console) -> Result<Exit, F
 fn watch(path: &Path, arguments: &ExpectArgs) -> Result<Verdict, Failure> {
     let start = Instant::now();
     let loaded = load(path, &arguments.changes)?;
-    let mut simulation = build(&loaded, BuildOptions { threads: arguments.threads, seed: None })?;
+    let mut simulation = Simulation::new(&loaded.scene, BuildOptions { threads: arguments.threads, seed: None });
     let mut watch = Watch::new(&loaded.scene);
     watch.observe(&simulation.solver);
     let mut diverged = None;

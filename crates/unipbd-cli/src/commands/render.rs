@@ -2,7 +2,7 @@
 
 use unipbd_core::BuildOptions;
 
-use super::scene::{build, load};
+use super::scene::load;
 use crate::args::{RenderArgs, is_log};
 use crate::exit::{Exit, Failure};
 use crate::interrupt;
@@ -22,7 +22,7 @@ pub(super) fn render(arguments: &RenderArgs, console: Console) -> Result<Exit, F
     refuse_existing(&job)?;
     let source = Source::open(arguments)?;
     interrupt::listen();
-    let setting = source.setting()?;
+    let setting = source.setting();
     if is_film(&job)? && render::Survey::is_needed(&setting, &job.options) {
         job.options = survey(&source, &setting, &job, console)?;
     }
@@ -122,11 +122,11 @@ impl Source {
         Ok(Source::Scene { loaded: Box::new(loaded), options, fields: fields_for(arguments.look.color) })
     }
 
-    fn setting(&self) -> Result<Setting, Failure> {
+    fn setting(&self) -> Setting {
         match self {
-            Source::Log(log) => Ok(log.setting().clone()),
+            Source::Log(log) => log.setting().clone(),
             Source::Scene { loaded, options, .. } => {
-                Ok(build(loaded, options.clone())?.setting(&loaded.scene, &loaded.path))
+                Simulation::new(&loaded.scene, options.clone()).setting(&loaded.scene, &loaded.path)
             }
         }
     }
@@ -143,9 +143,11 @@ impl Source {
             Source::Log(log) => {
                 Box::new(log.frames()?.map(|frame| frame.map(|frame| frame.snapshot).map_err(Failure::from)))
             }
-            Source::Scene { loaded, options, fields } => {
-                Box::new(SceneFrames { simulation: build(loaded, options.clone())?, fields: *fields, at_start: true })
-            }
+            Source::Scene { loaded, options, fields } => Box::new(SceneFrames {
+                simulation: Simulation::new(&loaded.scene, options.clone()),
+                fields: *fields,
+                at_start: true,
+            }),
         };
         Ok(Box::new(frames.map(|frame| if interrupt::requested() { Err(interrupted()) } else { frame })))
     }

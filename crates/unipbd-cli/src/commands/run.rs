@@ -4,7 +4,7 @@ use unipbd_core::observe::{Diagnostics, Event};
 use unipbd_core::{BuildOptions, SolverError};
 
 use super::recording::Recording;
-use super::scene::{build, load};
+use super::scene::load;
 use crate::args::{RunArgs, StopCondition};
 use crate::exit::{Exit, Failure};
 use crate::expect::Watch;
@@ -21,7 +21,7 @@ pub(super) fn run(arguments: &RunArgs, console: Console) -> Result<Exit, Failure
     interrupt::listen();
     let statistics = Statistics::start();
     let options = BuildOptions { threads: arguments.threads, seed: None };
-    let simulation = build(&loaded, options)?;
+    let simulation = Simulation::new(&loaded.scene, options);
     announce(&simulation, &loaded, console);
     let recording = destination
         .map(|destination| Recording::start(destination, &simulation, &loaded, arguments.log.fields))

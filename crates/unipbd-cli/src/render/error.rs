@@ -1,8 +1,7 @@
 use std::fmt;
 use std::path::PathBuf;
 
-use super::encode::GIF_MEMORY;
-use super::options::ColorBy;
+use super::color_by::ColorBy;
 
 /// Why a picture could not be made.
 #[derive(Debug)]
@@ -36,7 +35,10 @@ pub enum RenderError {
     /// `ffmpeg` failed; with what it said.
     Ffmpeg(String),
     /// The GIF would need too much memory.
-    GifMemory,
+    GifMemory {
+        /// Most that it may take [byte].
+        limit: usize,
+    },
     /// The GIF does not fit into the size asked for.
     GifSize {
         /// Bytes asked for.
@@ -80,10 +82,10 @@ impl fmt::Display for RenderError {
                 program.display()
             ),
             RenderError::Ffmpeg(message) => write!(f, "ffmpeg failed: {message}"),
-            RenderError::GifMemory => write!(
+            RenderError::GifMemory { limit } => write!(
                 f,
                 "the GIF needs more than {} MB of memory: use fewer frames (--every, --from, --to), a smaller --width, or .mp4",
-                GIF_MEMORY / 1_000_000
+                limit / 1_000_000
             ),
             RenderError::GifSize { limit } => {
                 write!(f, "the GIF does not fit into {limit} bytes: use fewer frames or a smaller --width")

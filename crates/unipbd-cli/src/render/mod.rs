@@ -7,6 +7,7 @@ pub mod color;
 pub mod encode;
 
 mod bodies;
+mod color_by;
 mod error;
 mod field;
 mod fluids;
@@ -24,10 +25,11 @@ mod theme;
 mod view;
 mod walls;
 
+pub use color_by::ColorBy;
 pub use error::RenderError;
 pub use image::Image;
 pub use job::{Existing, RenderJob, Rendered, run};
-pub use options::{Background, ColorBy, Range, RenderOptions, Style, TimeStamp};
+pub use options::{Background, Range, RenderOptions, Style, TimeStamp};
 pub use output::{Numbered, Output, plan_output};
 pub use renderer::Renderer;
 pub use select::Selection;

@@ -1,8 +1,9 @@
 use unipbd_core::phase::Phase;
 
 use super::color::ColorMap;
+use super::color_by::ColorBy;
 use super::error::RenderError;
-use super::options::{ColorBy, Range};
+use super::options::Range;
 use crate::snapshot::Snapshot;
 
 /// The numbers that colours show, and the colour map they run through.

@@ -1,5 +1,6 @@
+use super::color_by::ColorBy;
 use super::error::RenderError;
-use super::options::{ColorBy, Range, RenderOptions};
+use super::options::{Range, RenderOptions};
 use super::scalar::Scalar;
 use super::view::Extent;
 use crate::snapshot::{Setting, Snapshot};

@@ -2,11 +2,12 @@
 //!
 //! The text is parsed into a tree that keeps positions, overrides are laid over it, the tree is
 //! compared with the JSON schema of [`Scene`], and what remains is checked for meaning by
-//! [`Scene::validate`]. A fault found early is replaced by a value that raises no further
+//! [`Scene::check`]. A fault found early is replaced by a value that raises no further
 //! complaints, so that only causes are reported.
 
 mod diagnostic;
 mod overrides;
+mod renamed;
 mod repair;
 mod schema;
 mod source;
@@ -20,10 +21,11 @@ use std::path::{Path, PathBuf};
 use serde::Deserialize;
 use sha2::{Digest, Sha256};
 use toml::de::DeTable;
-use unipbd_core::scene::{KeyPath, Problem, Scene};
+use unipbd_core::scene::{CheckedScene, KeyPath, Problem, Scene};
 
 pub use diagnostic::{Diagnostic, Origin, SceneFileError};
 pub use overrides::{InvalidOverride, Override};
+pub use renamed::renamed_key_hint;
 pub use schema::schema;
 
 use repair::Repair;
@@ -36,8 +38,8 @@ const LARGEST_FILE: u64 = 4 << 20;
 /// A scene and the text it came from.
 #[derive(Clone, Debug)]
 pub struct LoadedScene {
-    /// The scene, with the overrides, free of problems.
-    pub scene: Scene,
+    /// The scene, with the overrides.
+    pub scene: CheckedScene,
     /// The file as read, without the overrides.
     pub text: String,
     /// Where the file is.
@@ -66,7 +68,7 @@ pub fn load(path: impl AsRef<Path>, overrides: &[Override]) -> Result<LoadedScen
 
 /// Reads a scene from text; `file_name` stands in messages.
 pub fn parse(text: &str, file_name: &str, overrides: &[Override]) -> Result<LoadedScene, SceneFileError> {
-    let sources = Sources::new(file_name, text, overrides);
+    let sources = Sources::new(file_name, text, overrides.iter().map(Override::text));
     let scene = read(&sources, overrides).map_err(|faults| sources.error(faults))?;
     Ok(LoadedScene {
         scene,
@@ -77,7 +79,7 @@ pub fn parse(text: &str, file_name: &str, overrides: &[Override]) -> Result<Load
     })
 }
 
-fn read(sources: &Sources, overrides: &[Override]) -> Result<Scene, Vec<Fault>> {
+fn read(sources: &Sources, overrides: &[Override]) -> Result<CheckedScene, Vec<Fault>> {
     let schema = schema();
     let (table, errors) = DeTable::parse_recoverable(sources.text());
     let (mut faults, doubtful) = syntax::faults(sources.text(), table.get_ref(), &errors);
@@ -95,10 +97,12 @@ fn read(sources: &Sources, overrides: &[Override]) -> Result<Scene, Vec<Fault>> 
     faults.append(&mut repair.faults);
     match Scene::deserialize(tree.to_toml()) {
         Ok(scene) => {
-            let problems = scene.validate().0.into_iter();
-            let causes = problems.filter(|problem| !repair.explains(problem, &tree));
-            faults.extend(causes.map(|problem| locate(problem, &tree)));
-            if faults.is_empty() { Ok(scene) } else { Err(faults) }
+            let checked = scene.check();
+            if let Err(problems) = &checked {
+                let causes = problems.0.iter().filter(|problem| !repair.explains(problem, &tree));
+                faults.extend(causes.map(|problem| locate(problem.clone(), &tree)));
+            }
+            checked.ok().filter(|_| faults.is_empty()).ok_or(faults)
         }
         Err(error) if faults.is_empty() => Err(vec![Fault::new(KeyPath::default(), None, error.message())]),
         Err(_) => Err(faults),

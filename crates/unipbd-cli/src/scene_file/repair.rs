@@ -4,8 +4,9 @@ use std::collections::BTreeSet;
 use std::ops::Range;
 
 use serde_json::Value as Schema;
-use unipbd_core::scene::{KeyPath, Problem, nearest};
+use unipbd_core::scene::{KeyPath, KeySegment, Problem, nearest};
 
+use super::renamed;
 use super::schema::{self, ArrayKind, Kind, TableKind};
 use super::source::{Fault, FaultKind, Sources};
 use super::tree::{Entry, Node, Value};
@@ -268,10 +269,13 @@ impl<'a> Repair<'a> {
         path: &KeyPath,
     ) -> Option<String> {
         let entry = entry?;
-        let near = nearest(key, table.keys.iter().map(|(name, _)| *name)).map(str::to_owned);
-        let hint = match &near {
-            Some(near) => Some(format!("did you mean `{near}`?")),
-            None => self.home_of(key, path).or_else(|| valid_keys(table)),
+        let (near, hint) = match renamed::find(&without_numbers(&path.then(key))) {
+            Some(renamed) => (renamed.successor().map(str::to_owned), Some(renamed.hint())),
+            None => {
+                let near = nearest(key, table.keys.iter().map(|(name, _)| *name)).map(str::to_owned);
+                let hint = near.as_ref().map(|near| format!("did you mean `{near}`?"));
+                (near, hint.or_else(|| self.home_of(key, path)).or_else(|| valid_keys(table)))
+            }
         };
         let place = if path.0.is_empty() { String::new() } else { format!(" in {path}") };
         let message = format!("unknown key `{}`{place}", shortened(key));
@@ -331,6 +335,12 @@ fn has_tag_of(root: &Schema, table: &TableKind<'_>, entries: &std::collections::
         }
         _ => true,
     })
+}
+
+/// A path such as `liquid.density`, whatever the number of the table.
+fn without_numbers(path: &KeyPath) -> String {
+    let keys = path.0.iter().filter(|segment| matches!(segment, KeySegment::Key(_))).cloned();
+    KeyPath(keys.collect()).to_string()
 }
 
 fn description(schema: &Schema) -> Option<String> {

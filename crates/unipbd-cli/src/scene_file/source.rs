@@ -6,7 +6,6 @@ use std::string::FromUtf8Error;
 use unipbd_core::scene::KeyPath;
 
 use super::diagnostic::{Diagnostic, Origin, SceneFileError};
-use super::overrides::Override;
 
 /// What kind of check found a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -60,9 +59,10 @@ pub(super) struct Sources<'a> {
 }
 
 impl<'a> Sources<'a> {
-    pub(super) fn new(file_name: &'a str, text: &'a str, overrides: &'a [Override]) -> Self {
+    /// The text of a file of this name, and those of overrides.
+    pub(super) fn new(file_name: &'a str, text: &'a str, overrides: impl Iterator<Item = &'a str>) -> Self {
         let mut start = 0;
-        let texts = std::iter::once(text).chain(overrides.iter().map(|change| change.text()));
+        let texts = std::iter::once(text).chain(overrides);
         let place = |part: &'a str| {
             let place = (start, part);
             start += part.len() + 1;
@@ -163,7 +163,7 @@ pub(super) fn not_text(file_name: &str, error: &FromUtf8Error) -> SceneFileError
     let valid = error.utf8_error().valid_up_to();
     let lossy = String::from_utf8_lossy(error.as_bytes());
     let byte = error.as_bytes()[valid];
-    let sources = Sources::new(file_name, &lossy, &[]);
+    let sources = Sources::new(file_name, &lossy, std::iter::empty());
     let end = valid + char::REPLACEMENT_CHARACTER.len_utf8();
     let fault = Fault::new(KeyPath::default(), Some(valid..end), format!("not UTF-8 text: byte 0x{byte:02x}"));
     sources.error(vec![fault.hint("save the file as UTF-8")])

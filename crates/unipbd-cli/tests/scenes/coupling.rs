@@ -16,7 +16,7 @@ fn draft(ratio: f64) -> f64 {
         substeps = 8
         [[liquid]]
         name = "water"
-        viscosity = 0.05
+        xsph = 0.05
         [[block]]
         material = "water"
         min = [0.0, 0.0]

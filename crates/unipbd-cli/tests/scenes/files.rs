@@ -30,7 +30,7 @@ fn check(limit: f64) {
         if scene.estimate().cost_seconds > limit {
             continue;
         }
-        let mut solver = scene.build(BuildOptions::default()).unwrap();
+        let mut solver = scene.build(BuildOptions::default());
         let mut watch = Watch::new(&scene);
         watch.observe(&solver);
         while solver.time() < scene.duration * (1.0 - 1e-9) {

@@ -26,7 +26,7 @@ fn the_floor_of_a_still_tank_carries_the_water_and_the_sides_its_pressure() {
         substeps = 16
         [[liquid]]
         name = "water"
-        viscosity = 0.05
+        xsph = 0.05
         [[block]]
         material = "water"
         min = [0.0, 0.0]
@@ -59,7 +59,7 @@ fn water_over_a_static_body_and_an_obstacle_weighs_on_each_what_it_displaces_and
         substeps = 16
         [[liquid]]
         name = "water"
-        viscosity = 0.05
+        xsph = 0.05
         [[block]]
         material = "water"
         min = [0.0, 0.4]

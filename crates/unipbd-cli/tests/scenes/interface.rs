@@ -103,10 +103,10 @@ fn two_liquids_that_change_places_keep_their_areas() {
         [[liquid]]
         name = "heavy"
         density = 2000.0
-        viscosity = 0.02
+        xsph = 0.02
         [[liquid]]
         name = "light"
-        viscosity = 0.02
+        xsph = 0.02
         [[block]]
         material = "light"
         min = [0.0, 0.0]

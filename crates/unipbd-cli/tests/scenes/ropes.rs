@@ -151,7 +151,7 @@ fn a_rope_of_a_light_liquid_floats_on_water() {
         spacing = 0.05
         [[liquid]]
         name = "water"
-        viscosity = 0.05
+        xsph = 0.05
         [[liquid]]
         name = "cork"
         density = 300.0

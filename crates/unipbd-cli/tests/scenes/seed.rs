@@ -71,7 +71,7 @@ fn keys_beside_a_preset_win_over_it() {
         let text = format!(
             "[solver]\n{keys}\n[[liquid]]\nname = \"water\"\n[[block]]\nmaterial = \"water\"\nmin = [0.0, 0.0]\nmax = [1.0, 1.0]"
         );
-        unipbd_cli::scene_file::parse(&text, "test.toml", &[]).unwrap().scene.solver
+        unipbd_cli::scene_file::parse(&text, "test.toml", &[]).unwrap().scene.solver.clone()
     };
     let changed = settings("iterations = 7\npreset = \"seed\"");
     assert_eq!((changed.iterations, changed.substeps), (7, Substeps::Fixed(1)));

@@ -1,13 +1,13 @@
 use std::path::PathBuf;
 
 use unipbd_cli::scene_file;
-use unipbd_core::scene::Scene;
+use unipbd_core::scene::CheckedScene;
 use unipbd_core::{BuildOptions, Solver};
 
 /// A solver for a scene given as TOML.
 pub fn solver(text: &str) -> Solver {
     let loaded = scene_file::parse(text, "test.toml", &[]).unwrap_or_else(|error| panic!("{error}"));
-    loaded.scene.build(BuildOptions { threads: Some(1), seed: None }).unwrap()
+    loaded.scene.build(BuildOptions { threads: Some(1), seed: None })
 }
 
 /// Runs until this time [s].
@@ -18,7 +18,7 @@ pub fn run_until(solver: &mut Solver, time: f64) {
 }
 
 /// All scene files of the project with their scenes.
-pub fn scenes() -> Vec<(PathBuf, String, Scene)> {
+pub fn scenes() -> Vec<(PathBuf, String, CheckedScene)> {
     let root = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("../../scenes");
     let folders = [root.clone(), root.join("seed")];
     let entries = folders.iter().filter_map(|folder| std::fs::read_dir(folder).ok()).flatten();

@@ -23,7 +23,7 @@ fn cohesion_rounds_a_drop_and_keeps_its_momentum() {
             substeps = 8
             [[liquid]]
             name = "water"
-            viscosity = 0.1
+            xsph = 0.1
             cohesion = {cohesion}
             [[block]]
             material = "water"
@@ -85,7 +85,7 @@ fn film_under(ceiling: &str, adhesion: f64) -> Solver {
         substeps = 8
         [[liquid]]
         name = "glue"
-        viscosity = 0.05
+        xsph = 0.05
         adhesion = {adhesion}
         [[block]]
         material = "glue"
@@ -130,7 +130,7 @@ fn a_drop_spreads_on_a_wall_by_adhesion_and_keeps_its_momentum_with_a_body() {
             substeps = 8
             [[liquid]]
             name = "water"
-            viscosity = 0.05
+            xsph = 0.05
             cohesion = 4.0
             adhesion = {adhesion}
             [[disc]]

@@ -8,8 +8,8 @@ mod waves;
 use crate::constraints::{Adhesion, ConstraintGroup, Density, DensitySettings, MassDensity, ShapeMatching};
 use crate::coupling::RigidBodies;
 use crate::effects::{
-    Baroclinic, Cohesion, Conduction, Drag, Effect, Heating, QuadraticDrag, ShearViscosity, SmokeAdvection, Viscosity,
-    VorticityConfinement,
+    Baroclinic, Cohesion, Conduction, Drag, DragLaw, Effect, Heating, ShearViscosity, SmokeAdvection,
+    VorticityConfinement, Xsph,
 };
 use crate::math::{Vector, Vector64, real, vector};
 use crate::neighbors::{ListCost, Neighbors, SearchPositions};
@@ -20,7 +20,7 @@ use crate::periodic::{Periodic, PeriodicAxis};
 use crate::phase::{MaterialIndex, Phase};
 use crate::pressure_grid::PressureGrid;
 use crate::rng::Rng;
-use crate::scene::{BodySolver, GradientPoint, MaterialRef, Points, Problems, Scene, disc_points};
+use crate::scene::{BodySolver, CheckedScene, GradientPoint, MaterialRef, Points, Problems, Scene, disc_points};
 use crate::sleep::LiquidSleep;
 use crate::sources::{EmitterSystem, RemovalRules};
 use crate::step::{BodyForce, Parts, Solver, SubstepRule};
@@ -43,21 +43,30 @@ pub struct BuildOptions {
 }
 
 impl Scene {
-    /// Builds a solver and settles its start.
+    /// Checks the scene, builds a solver and settles its start.
     ///
     /// # Errors
     /// All [`Problems`] of a faulty scene.
     pub fn build(&self, options: BuildOptions) -> Result<Solver, Problems> {
         let problems = self.validate();
-        if !problems.0.is_empty() {
-            return Err(problems);
-        }
-        let seed = options.seed.unwrap_or(self.seed);
-        let threads = options.threads.unwrap_or_else(available_threads);
-        let mut solver = Solver::new(parts(self, seed), threads);
-        solver.settle(self.solver.settle_substeps);
-        Ok(solver)
+        if problems.0.is_empty() { Ok(solver(self, options)) } else { Err(problems) }
     }
+}
+
+impl CheckedScene {
+    /// Builds a solver and settles its start.
+    pub fn build(&self, options: BuildOptions) -> Solver {
+        solver(self, options)
+    }
+}
+
+/// The solver of a scene without problems.
+fn solver(scene: &Scene, options: BuildOptions) -> Solver {
+    let seed = options.seed.unwrap_or(scene.seed);
+    let threads = options.threads.unwrap_or_else(available_threads);
+    let mut solver = Solver::new(parts(scene, seed), threads);
+    solver.settle(scene.solver.settle_substeps);
+    solver
 }
 
 fn available_threads() -> usize {
@@ -144,36 +153,25 @@ fn groups(
     groups
 }
 
+/// The effects of a scene, in the order in which they add their changes.
 fn effects(scene: &Scene, seed: u64) -> Vec<Box<dyn Effect>> {
-    let mut effects: Vec<Box<dyn Effect>> = Vec::new();
-    if let Some(viscosity) = Viscosity::new(scene) {
-        effects.push(Box::new(viscosity));
-    }
-    if let Some(viscosity) = ShearViscosity::new(scene) {
-        effects.push(Box::new(viscosity));
-    }
-    if let Some(drag) = Drag::new(scene, Rng::new(seed, WIND_STREAM).state()) {
-        effects.push(Box::new(drag));
-    }
-    if let Some(drag) = QuadraticDrag::new(scene, Rng::new(seed, WIND_STREAM).state()) {
-        effects.push(Box::new(drag));
-    }
-    if let Some(cohesion) = Cohesion::new(scene) {
-        effects.push(Box::new(cohesion));
-    }
-    if let Some(baroclinic) = Baroclinic::new(scene) {
-        effects.push(Box::new(baroclinic));
-    }
-    if let Some(conduction) = Conduction::new(scene) {
-        effects.push(Box::new(conduction));
-    }
-    if let Some(heating) = Heating::new(scene) {
-        effects.push(Box::new(heating));
-    }
-    if let Some(confinement) = VorticityConfinement::new(scene) {
-        effects.push(Box::new(confinement));
-    }
-    effects
+    let wind = Rng::new(seed, WIND_STREAM).state();
+    let effects = [
+        boxed(Xsph::new(scene)),
+        boxed(ShearViscosity::new(scene)),
+        boxed(Drag::new(scene, DragLaw::Thin, wind)),
+        boxed(Drag::new(scene, DragLaw::Quadratic, wind)),
+        boxed(Cohesion::new(scene)),
+        boxed(Baroclinic::new(scene)),
+        boxed(Conduction::new(scene)),
+        boxed(Heating::new(scene)),
+        boxed(VorticityConfinement::new(scene)),
+    ];
+    effects.into_iter().flatten().collect()
+}
+
+fn boxed(effect: Option<impl Effect + 'static>) -> Option<Box<dyn Effect>> {
+    effect.map(|effect| Box::new(effect) as Box<dyn Effect>)
 }
 
 fn periodic(scene: &Scene) -> Periodic {

@@ -1,26 +1,50 @@
 use super::{Changes, Effect, Wind, any, per_gas};
 use crate::constraints::{Needs, Substep};
-use crate::math::Real;
-use crate::scene::Scene;
+use crate::math::{Real, real};
+use crate::scene::{MaterialRef, Scene};
 
-/// Drag of thin gas towards the air around it (Macklin et al. 2014, equation 29):
-/// f = -k (v - v_env) (1 - rho/rho0), implicit, once per substep.
+/// Drag towards the air around, implicit in the velocity, once per substep.
 pub struct Drag {
-    rate: Vec<Real>,
+    law: DragLaw,
+    /// Coefficient of the law, by material.
+    coefficient: Vec<Real>,
     wind: Wind,
 }
 
+/// How drag grows with the speed against the air.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum DragLaw {
+    /// Drag of thin gas (Macklin et al. 2014, equation 29): dv/dt = -k (v - v_env) (1 - rho/rho0).
+    Thin,
+    /// dv/dt = -c |v - v_env| (v - v_env): a particle alone falls at sqrt(g/c) at last.
+    Quadratic,
+}
+
 impl Drag {
-    /// The drag of a scene, or nothing where no gas has one.
-    pub fn new(scene: &Scene, seed: u64) -> Option<Self> {
-        let rate = per_gas(scene, |gas| gas.drag);
-        any(&rate).then(|| Drag { rate, wind: Wind::new(&scene.environment, scene.spacing, seed) })
+    /// The drag of a scene by this law, or nothing where no material has one.
+    pub fn new(scene: &Scene, law: DragLaw, seed: u64) -> Option<Self> {
+        let coefficient = match law {
+            DragLaw::Thin => per_gas(scene, |gas| gas.drag),
+            DragLaw::Quadratic => scene.materials().map(quadratic).collect(),
+        };
+        any(&coefficient).then(|| Drag { law, coefficient, wind: Wind::new(&scene.environment, scene.spacing, seed) })
+    }
+}
+
+fn quadratic(material: MaterialRef<'_>) -> Real {
+    match material {
+        MaterialRef::Liquid(liquid) => real(liquid.quadratic_drag),
+        MaterialRef::Gas(gas) => real(gas.quadratic_drag),
+        _ => 0.0,
     }
 }
 
 impl Effect for Drag {
     fn name(&self) -> &'static str {
-        "drag"
+        match self.law {
+            DragLaw::Thin => "drag",
+            DragLaw::Quadratic => "quadratic_drag",
+        }
     }
 
     fn needs(&self) -> Needs {
@@ -32,10 +56,15 @@ impl Effect for Drag {
         let (positions, velocities) = (particles.positions(), particles.velocities());
         let wind = self.wind.at(now.time);
         now.parallelism.update(&mut out.velocity, |i, change| {
-            let thin = (-particles.density_errors()[i]).max(0.0);
-            let pull = self.rate[usize::from(particles.materials()[i])] * thin * now.dt;
-            if pull > 0.0 {
-                *change += (wind.velocity(positions[i]) - velocities[i]) * (pull / (1.0 + pull));
+            let coefficient = self.coefficient[usize::from(particles.materials()[i])];
+            if coefficient > 0.0 {
+                let against = wind.velocity(positions[i]) - velocities[i];
+                let size = match self.law {
+                    DragLaw::Thin => (-particles.density_errors()[i]).max(0.0),
+                    DragLaw::Quadratic => against.length(),
+                };
+                let pull = coefficient * size * now.dt;
+                *change += against * (pull / (1.0 + pull));
             }
         });
     }

@@ -7,23 +7,21 @@ mod conduction;
 mod confinement;
 mod drag;
 mod heating;
-mod quadratic_drag;
 mod shear_viscosity;
 mod smoke;
-mod viscosity;
 mod wind;
+mod xsph;
 
 pub use baroclinic::Baroclinic;
 pub use cohesion::Cohesion;
 pub use conduction::Conduction;
 pub use confinement::VorticityConfinement;
-pub use drag::Drag;
+pub use drag::{Drag, DragLaw};
 pub use heating::Heating;
-pub use quadratic_drag::QuadraticDrag;
 pub use shear_viscosity::ShearViscosity;
 pub use smoke::{Advected, SmokeAdvection};
-pub use viscosity::Viscosity;
 pub use wind::Wind;
+pub use xsph::Xsph;
 
 use crate::bytes::held;
 use crate::constraints::{Needs, Substep};

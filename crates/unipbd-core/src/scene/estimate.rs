@@ -1,6 +1,6 @@
 //! What a scene would cost, without building it.
 
-use super::layout::{block_counts, disc_count};
+use super::layout::{block_counts, disc_count, particle_counts};
 use super::{Emitter, Profile, Scene, SubstepLaw, Substeps};
 
 /// Memory per particle [byte]: columns, multipliers and about 20 stored neighbours.
@@ -91,7 +91,8 @@ struct Change {
 
 /// Follows the number of particles, which is piecewise linear in time.
 fn population(scene: &Scene) -> Population {
-    let (start, mut changes) = (start_count(scene), changes(scene));
+    let start = particle_counts(scene).into_iter().map(|(_, count)| count).sum();
+    let mut changes = changes(scene);
     changes.retain(|change| change.time < scene.duration);
     changes.push(Change { time: scene.duration, rate: 0.0, jump: 0.0 });
     changes.sort_by(|a, b| a.time.total_cmp(&b.time));
@@ -105,14 +106,6 @@ fn population(scene: &Scene) -> Population {
         (time, count, rate) = (time + span, next + change.jump, rate + change.rate);
     }
     population
-}
-
-fn start_count(scene: &Scene) -> f64 {
-    let blocks = scene.block.iter().map(|block| block_counts(block, scene.spacing).into_iter().product::<f64>());
-    let discs = scene.disc.iter().map(|disc| disc_count(disc, scene.spacing));
-    let points = scene.points.iter().map(|points| points.positions.len() as f64);
-    let ropes = scene.rope.iter().map(|rope| rope.pieces(scene.spacing) + 1.0);
-    blocks.chain(discs).chain(points).chain(ropes).sum()
 }
 
 fn changes(scene: &Scene) -> Vec<Change> {
@@ -129,25 +122,19 @@ fn changes(scene: &Scene) -> Vec<Change> {
         let jump = -(points.positions.len() as f64);
         changes.push(Change { time: scene.lifetime(&points.material), rate: 0.0, jump });
     }
+    let mut flow = |rate: f64, material: &str, start: f64, stop: Option<f64>| {
+        let (lifetime, stop) = (scene.lifetime(material), stop.unwrap_or(f64::INFINITY));
+        let steps = [(start, rate), (stop, -rate), (start + lifetime, -rate), (stop + lifetime, rate)];
+        changes.extend(steps.map(|(time, rate)| Change { time, rate, jump: 0.0 }));
+    };
     for emitter in &scene.emitter {
         let (particles, markers) = rates(emitter, scene.spacing);
         let smoke = emitter.smoke.as_ref().map_or("", |smoke| &smoke.material);
-        for (rate, material) in [(particles, emitter.material.as_str()), (markers, smoke)] {
-            let (lifetime, stop) = (scene.lifetime(material), emitter.stop.unwrap_or(f64::INFINITY));
-            let step = |time, rate| Change { time, rate, jump: 0.0 };
-            changes.push(step(emitter.start, rate));
-            changes.push(step(stop, -rate));
-            changes.push(step(emitter.start + lifetime, -rate));
-            changes.push(step(stop + lifetime, rate));
-        }
+        flow(particles, &emitter.material, emitter.start, emitter.stop);
+        flow(markers, smoke, emitter.start, emitter.stop);
     }
     for injector in &scene.injector {
-        let (lifetime, stop) = (scene.lifetime(&injector.material), injector.stop.unwrap_or(f64::INFINITY));
-        let step = |time, rate| Change { time, rate, jump: 0.0 };
-        changes.push(step(injector.start, injector.rate));
-        changes.push(step(stop, -injector.rate));
-        changes.push(step(injector.start + lifetime, -injector.rate));
-        changes.push(step(stop + lifetime, injector.rate));
+        flow(injector.rate, &injector.material, injector.start, injector.stop);
     }
     changes
 }

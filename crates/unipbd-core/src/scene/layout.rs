@@ -1,6 +1,6 @@
 //! Lattices that fill the shapes of a scene.
 
-use super::{Block, Disc};
+use super::{Block, Disc, KeyPath, Scene};
 use crate::math::Vector64;
 
 /// Columns and rows of the lattice that fills a block.
@@ -40,4 +40,16 @@ pub(crate) fn disc_points(disc: &Disc, spacing: f64) -> Vec<Vector64> {
 /// Number of particles of a disc, without laying them out.
 pub(crate) fn disc_count(disc: &Disc, spacing: f64) -> f64 {
     std::f64::consts::PI * (disc.radius / spacing) * (disc.radius / spacing)
+}
+
+/// Numbers of particles that the tables of a scene lay out at the start.
+pub(crate) fn particle_counts(scene: &Scene) -> Vec<(KeyPath, f64)> {
+    let spacing = scene.spacing;
+    let blocks = scene.block.iter().map(|block| block_counts(block, spacing).into_iter().product::<f64>());
+    let discs = scene.disc.iter().map(|disc| disc_count(disc, spacing));
+    let points = scene.points.iter().map(|points| points.positions.len() as f64);
+    let ropes = scene.rope.iter().map(|rope| rope.pieces(spacing) + 1.0);
+    let paths = |kind: &'static str| (0..).map(move |index| KeyPath::entry(kind, index));
+    let filled = paths("block").zip(blocks).chain(paths("disc").zip(discs));
+    filled.chain(paths("points").zip(points)).chain(paths("rope").zip(ropes)).collect()
 }

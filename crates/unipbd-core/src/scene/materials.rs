@@ -14,10 +14,11 @@ pub struct Liquid {
     /// Mass of a particle; left out, that of a square of the spacing [kg].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub particle_mass: Option<f64>,
-    /// XSPH viscosity per substep, 0 to 1: the fraction of velocity differences that is smoothed.
-    pub viscosity: f64,
-    /// Kinematic viscosity nu; a physical one, beside the cheap smoothing above [m^2/s]. Where a substep is too
-    /// long for it, it is cut to what is stable, with a warning.
+    /// XSPH smoothing (Schechter & Bridson 2012), 0 to 1: the fraction of velocity differences that each substep
+    /// smooths. The viscosity that comes of it grows with the number of substeps.
+    pub xsph: f64,
+    /// Kinematic viscosity nu, whatever the number of substeps [m^2/s]. Where a substep is too long for it, it is cut
+    /// to the largest stable one, with a warning.
     pub kinematic_viscosity: f64,
     /// Whether it has a free surface, or fills its domain and resists dilation too.
     pub surface: LiquidSurface,
@@ -41,7 +42,7 @@ impl Default for Liquid {
             name: String::new(),
             density: 1000.0,
             particle_mass: None,
-            viscosity: 0.0,
+            xsph: 0.0,
             kinematic_viscosity: 0.0,
             surface: LiquidSurface::Free,
             cohesion: 0.0,
@@ -90,8 +91,8 @@ pub struct Gas {
     pub baroclinic: f64,
     /// Diffusivity of temperature [m^2/s].
     pub conductivity: f64,
-    /// XSPH viscosity per substep, 0 to 1.
-    pub viscosity: f64,
+    /// XSPH smoothing, 0 to 1: the fraction of velocity differences that each substep smooths.
+    pub xsph: f64,
     /// Kinematic viscosity nu [m^2/s].
     pub kinematic_viscosity: f64,
     /// Time after which a particle is removed [s]; left out, it stays.
@@ -119,7 +120,7 @@ impl Default for Gas {
             vorticity: 0.0,
             baroclinic: 0.0,
             conductivity: 0.0,
-            viscosity: 0.0,
+            xsph: 0.0,
             kinematic_viscosity: 0.0,
             lifetime: None,
             keep_radius: None,

@@ -1,9 +1,10 @@
 //! The scene description: plain data that can be read, edited, checked and built.
 //!
 //! A [`Scene`] holds no runtime state. [`Scene::validate`] lists everything that is wrong with it,
-//! [`Scene::estimate`] says what it would cost, [`Scene::build`] makes a [`Solver`](crate::Solver).
+//! [`Scene::estimate`] says what it would cost, [`Scene::build`] checks it and makes a [`Solver`](crate::Solver).
 
 mod bodies;
+mod checked;
 mod contacts;
 mod copies;
 mod description;
@@ -29,6 +30,7 @@ pub use bodies::{
     BodyDescription, BodyKind, BodySolver, Copies, Heap, JointDescription, JointRule, MotionDescription, RotationRule,
     Station,
 };
+pub use checked::CheckedScene;
 pub use contacts::{ContactDescription, ContactMethod};
 pub use description::{Domain, Environment, Scene, View};
 pub use estimate::{BYTES_PER_PARTICLE, Estimate, SECONDS_PER_PARTICLE_AND_SUBSTEP, SECONDS_WITH_COARSE_PROJECTION};
@@ -46,5 +48,5 @@ pub use walls::{HalfPlane, Obstacle, Side, Slip, Tank};
 pub use waves::Wave;
 
 pub(crate) use layout::{block_points, disc_points};
-pub(crate) use substep_law::SubstepLaw;
+pub(crate) use substep_law::{COURANT, SubstepLaw};
 pub(crate) use validate::FARTHEST;

@@ -3,7 +3,7 @@
 use super::Scene;
 
 /// Way per substep, in spacings, that the Courant-Friedrichs-Lewy condition allows.
-const COURANT: f64 = 0.4;
+pub(crate) const COURANT: f64 = 0.4;
 /// The same where a coarse projection goes before, at a target compression of 1 %: it goes as the root of the target...
 const COARSE_COURANT: f64 = 0.8;
 /// ...within these limits.

@@ -3,26 +3,65 @@
 use std::time::Duration;
 
 use super::Solver;
-use crate::math::{Real, Vector};
-use crate::observe::{Event, Material, WallForce, WallOutline};
-use crate::particles::Particles;
+use crate::math::Real;
+use crate::observe::{Event, WallForce, WallOutline};
 use crate::phase::{MaterialIndex, Phase};
-use crate::rigid::Body;
+
+/// What a solver and the view of its substep show alike.
+macro_rules! shared_access {
+    ($viewer:ty) => {
+        impl $viewer {
+            /// Simulated time; in a substep, that of its start [s].
+            pub fn time(&self) -> f64 {
+                self.world.clock.time
+            }
+
+            /// Substeps done.
+            pub fn step(&self) -> u64 {
+                self.world.clock.step
+            }
+
+            /// The particles. Rows are re-sorted by steps; ids are stable.
+            pub fn particles(&self) -> &crate::particles::Particles {
+                &self.world.parts.particles
+            }
+
+            /// Positions by row [m].
+            pub fn positions(&self) -> &[crate::math::Vector] {
+                self.particles().positions()
+            }
+
+            /// Velocities by row [m/s].
+            pub fn velocities(&self) -> &[crate::math::Vector] {
+                self.particles().velocities()
+            }
+
+            /// Stable ids by row.
+            pub fn ids(&self) -> &[u32] {
+                self.particles().ids()
+            }
+
+            /// The materials, by [`MaterialIndex`](crate::MaterialIndex).
+            pub fn materials(&self) -> &[crate::observe::Material] {
+                &self.world.parts.materials
+            }
+
+            /// Rigid bodies; in a substep, as they were when the frame began:
+            /// [`SubstepView::body_pose`](crate::SubstepView::body_pose) says where they are.
+            pub fn bodies(&self) -> &[crate::rigid::Body] {
+                self.world.parts.rigid.as_ref().map_or(&[], |rigid| rigid.views())
+            }
+        }
+    };
+}
+pub(super) use shared_access;
+
+shared_access!(Solver);
 
 impl Solver {
-    /// Simulated time [s].
-    pub fn time(&self) -> f64 {
-        self.world.clock.time
-    }
-
     /// Frames done.
     pub fn frame(&self) -> u64 {
         self.world.clock.frame
-    }
-
-    /// Substeps done.
-    pub fn step(&self) -> u64 {
-        self.world.clock.step
     }
 
     /// Length of a frame [s].
@@ -38,26 +77,6 @@ impl Solver {
     /// Seed of the random choices.
     pub fn seed(&self) -> u64 {
         self.world.parts.seed
-    }
-
-    /// The particles. Rows are re-sorted by steps; ids are stable.
-    pub fn particles(&self) -> &Particles {
-        &self.world.parts.particles
-    }
-
-    /// Positions by row [m].
-    pub fn positions(&self) -> &[Vector] {
-        self.particles().positions()
-    }
-
-    /// Velocities by row [m/s].
-    pub fn velocities(&self) -> &[Vector] {
-        self.particles().velocities()
-    }
-
-    /// Stable ids by row.
-    pub fn ids(&self) -> &[u32] {
-        self.particles().ids()
     }
 
     /// Phases by row.
@@ -101,16 +120,6 @@ impl Solver {
     /// Advances each time particles are added or removed.
     pub fn id_generation(&self) -> u64 {
         self.world.clock.generation
-    }
-
-    /// The materials, by [`MaterialIndex`].
-    pub fn materials(&self) -> &[Material] {
-        &self.world.parts.materials
-    }
-
-    /// Rigid bodies.
-    pub fn bodies(&self) -> &[Body] {
-        self.world.parts.rigid.as_ref().map_or(&[], |rigid| rigid.views())
     }
 
     /// Walls as lines to draw.

@@ -1,8 +1,7 @@
+use super::access::shared_access;
 use super::world::World;
 use crate::math::{Real, Vector, Vector64};
-use crate::observe::Material;
-use crate::particles::Particles;
-use crate::rigid::{Bodies, Body, Pose, Twist};
+use crate::rigid::{Bodies, Pose, Twist};
 
 /// A run at the start of a substep, as a hook sees it
 /// (see [`Solver::step_frame_with`](crate::Solver::step_frame_with)).
@@ -10,49 +9,16 @@ pub struct SubstepView<'a> {
     world: &'a mut World,
 }
 
+shared_access!(SubstepView<'_>);
+
 impl<'a> SubstepView<'a> {
     pub(super) fn new(world: &'a mut World) -> Self {
         SubstepView { world }
     }
 
-    /// Simulated time at the start of the substep [s].
-    pub fn time(&self) -> f64 {
-        self.world.clock.time
-    }
-
     /// Length of the substep [s].
     pub fn dt(&self) -> f64 {
         self.world.clock.dt
-    }
-
-    /// Substeps done since the start.
-    pub fn step(&self) -> u64 {
-        self.world.clock.step
-    }
-
-    /// The particles. Rows are those of this substep alone.
-    pub fn particles(&self) -> &Particles {
-        &self.world.parts.particles
-    }
-
-    /// Positions by row [m].
-    pub fn positions(&self) -> &[Vector] {
-        self.particles().positions()
-    }
-
-    /// Velocities by row [m/s].
-    pub fn velocities(&self) -> &[Vector] {
-        self.particles().velocities()
-    }
-
-    /// Stable ids by row.
-    pub fn ids(&self) -> &[u32] {
-        self.particles().ids()
-    }
-
-    /// The materials, by [`MaterialIndex`](crate::MaterialIndex).
-    pub fn materials(&self) -> &[Material] {
-        &self.world.parts.materials
     }
 
     /// Adds to the acceleration of one row in this substep [m/s^2]. Particles moved by a script and
@@ -79,11 +45,6 @@ impl<'a> SubstepView<'a> {
     /// Inverse mass of one row [1/kg]; 0 where it is moved by a script.
     pub fn inverse_mass(&self, row: usize) -> Real {
         self.particles().inverse_masses()[row]
-    }
-    /// Rigid bodies as they were when the frame began; where they are now say [`SubstepView::body_pose`]
-    /// and [`SubstepView::body_velocity`].
-    pub fn bodies(&self) -> &[Body] {
-        self.world.parts.rigid.as_ref().map_or(&[], |rigid| rigid.views())
     }
 
     /// Centre of mass and angle of a body, named by its place in [`SubstepView::bodies`].

@@ -28,7 +28,7 @@ fn tank(width: f64) -> Tank {
 /// A column of water collapses.
 pub fn liquid() -> Scene {
     Scene {
-        liquid: vec![Liquid { name: "water".into(), viscosity: 0.01, ..Liquid::default() }],
+        liquid: vec![Liquid { name: "water".into(), xsph: 0.01, ..Liquid::default() }],
         block: vec![block("water", [0.0, 0.0], [1.0, 2.0])],
         tank: vec![tank(2.5)],
         ..Scene::default()
@@ -64,7 +64,7 @@ pub fn mixed() -> Scene {
         solver: SolverSettings { substeps: Substeps::Fixed(6), settle_substeps: Some(5), ..SolverSettings::default() },
         liquid: vec![
             Liquid { name: "water".into(), ..Liquid::default() },
-            Liquid { name: "oil".into(), density: 800.0, viscosity: 0.05, ..Liquid::default() },
+            Liquid { name: "oil".into(), density: 800.0, xsph: 0.05, ..Liquid::default() },
         ],
         gas: vec![Gas { name: "air".into(), ..Gas::default() }],
         solid: vec![Solid { name: "beads".into(), ..Solid::default() }],

@@ -61,7 +61,7 @@ class Scene(Keys, Builder):
         scene.add_block("water", min=(0, 0), max=(1, 2))
         scene.add_tank(min=(0, 0), max=(3, 3), open=["top"])
         scene.solver.substeps = 8
-        scene.materials["water"].viscosity = 0.02
+        scene.materials["water"].xsph = 0.02
         sim = scene.build(seed=7)
 
     `describe` lists all keys and says what they mean. Values are checked by `check` and `build`,

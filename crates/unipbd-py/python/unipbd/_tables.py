@@ -53,9 +53,7 @@ class Table(MutableMapping[str, Any]):
     def _known(self, key: str) -> Mapping[str, Any]:
         properties = self._properties()
         if key not in properties:
-            near = difflib.get_close_matches(key, properties, 1)
-            hint = f"; did you mean {near[0]!r}?" if near else f"; the keys are {', '.join(properties)}"
-            raise AttributeError(f"a scene has no key {key!r} here{hint}")
+            raise AttributeError(f"a scene has no key {key!r} here; {_hint(key, properties)}")
         node: Mapping[str, Any] = properties[key]
         return node
 
@@ -147,6 +145,15 @@ class Tables(Sequence[Table]):
 
     def __repr__(self) -> str:
         return "[" + ", ".join(map(repr, self)) + "]"
+
+
+def _hint(key: str, properties: Mapping[str, Any]) -> str:
+    """What to write instead of a key that is not one of these."""
+    renamed = _native.renamed_key_hint(key)
+    if renamed:
+        return renamed
+    near = difflib.get_close_matches(key, properties, 1)
+    return f"did you mean {near[0]!r}?" if near else f"the keys are {', '.join(properties)}"
 
 
 def _wrap(value: Any, node: Mapping[str, Any]) -> Any:

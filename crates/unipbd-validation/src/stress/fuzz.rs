@@ -1,36 +1,25 @@
 //! Random scenes, each made from its seed alone.
 
+use unipbd_core::rng::Rng;
 use unipbd_core::scene::{Block, Gas, Liquid, LiquidSurface, Scene, Slip, SolverSettings, Substeps, Tank};
 
 use super::{Ending, endure};
 use crate::scenes::{body, nozzle};
 
-/// SplitMix64 (Steele et al. 2014).
-struct Random(u64);
+/// Random choices.
+struct Random(Rng);
 
 impl Random {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9E37_79B9_7F4A_7C15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xBF58_476D_1CE4_E5B9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
-        z ^ (z >> 31)
-    }
-
-    fn unit(&mut self) -> f64 {
-        (self.next() >> 11) as f64 / (1u64 << 53) as f64
-    }
-
     fn range(&mut self, low: f64, high: f64) -> f64 {
-        low + (high - low) * self.unit()
+        low + (high - low) * self.0.unit()
     }
 
     fn chance(&mut self, part: f64) -> bool {
-        self.unit() < part
+        self.0.unit() < part
     }
 
     fn whole(&mut self, low: u32, high: u32) -> u32 {
-        low + (self.next() % u64::from(high - low + 1)) as u32
+        low + (self.0.next_u64() % u64::from(high - low + 1)) as u32
     }
 }
 
@@ -93,7 +82,7 @@ pub fn summary(scene: &Scene) -> String {
 
 /// The scene of a seed.
 pub fn random_scene(seed: u64) -> Scene {
-    let mut random = Random(seed);
+    let mut random = Random(Rng::from_state(seed));
     let spacing = 10f64.powf(random.range(-2.0, 0.0));
     let (width, height) = (f64::from(random.whole(8, 24)), f64::from(random.whole(8, 24)));
     let mut scene = Scene {

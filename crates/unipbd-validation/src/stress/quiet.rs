@@ -70,7 +70,7 @@ fn pool(sleep: bool) -> Solver {
     let [width, depth] = SIZE.map(|size| size * SPACING);
     let scene = Scene {
         spacing: SPACING,
-        liquid: vec![Liquid { viscosity: 0.01, ..Liquid::new("water", 1000.0) }],
+        liquid: vec![Liquid { xsph: 0.01, ..Liquid::new("water", 1000.0) }],
         block: vec![Block::new("water", [0.0, 0.0], [width, depth])],
         tank: vec![Tank::new([0.0, 0.0], [width, 2.0 * depth])],
         solver: SolverSettings { sleep, substeps: Substeps::Fixed(SUBSTEPS), ..SolverSettings::default() },

@@ -9,7 +9,7 @@ use unipbd_core::rigid::{Body, BodyKind};
 use unipbd_core::scene::Scene;
 
 use super::super::estimate::{emitted, particles as particle_object};
-use super::super::scene::{build, load};
+use super::super::scene::load;
 use crate::args::SceneChanges;
 use crate::exit::{Exit, Failure};
 use crate::report::format::{count, plural};
@@ -19,7 +19,7 @@ use crate::simulation::{Simulation, stage_names, title};
 
 pub(super) fn info(path: &Path, changes: &SceneChanges, console: Console) -> Result<Exit, Failure> {
     let loaded = load(path, changes)?;
-    let simulation = build(&loaded, BuildOptions::default())?;
+    let simulation = Simulation::new(&loaded.scene, BuildOptions::default());
     match console.form {
         Form::Json => console.object(&object(&loaded, &simulation))?,
         Form::Text => console.line(text(&loaded, &simulation))?,

@@ -10,7 +10,7 @@ use super::palette::{Histogram, Matcher, distance};
 use super::{partial_path, write_error};
 
 /// Most bytes of frames a GIF may hold in memory before it is written.
-pub const GIF_MEMORY: usize = 800_000_000;
+const GIF_MEMORY: usize = 800_000_000;
 
 /// How a GIF is compressed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -62,7 +62,7 @@ impl GifWriter {
         }
         let frame = image.to_rgb();
         if (self.frames.len() + 1) * frame.len() > GIF_MEMORY {
-            return Err(RenderError::GifMemory);
+            return Err(RenderError::GifMemory { limit: GIF_MEMORY });
         }
         self.frames.push(frame);
         Ok(())

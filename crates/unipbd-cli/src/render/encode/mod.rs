@@ -5,7 +5,7 @@ mod mp4;
 mod palette;
 mod png;
 
-pub use gif::{GIF_MEMORY, GifOptions, GifWriter};
+pub use gif::{GifOptions, GifWriter};
 pub use mp4::Mp4Writer;
 pub use png::{png_bytes, write_png};
 

@@ -4,16 +4,11 @@ use crate::bytes::held;
 use crate::constraints::Substep;
 use crate::math::{Real, Vector, larger, real};
 use crate::particles::Particles;
-use crate::scene::GradientPoint;
+use crate::scene::{COURANT, GradientPoint};
 use std::ops::Range;
 
 /// Farther than this many spacings from the origin f32 keeps too few digits of a position for kernels.
 const FAR: Real = 4096.0;
-/// Behind the prediction means a part of the way of the substep, but of no more of it than this [spacings]: what the
-/// Courant condition lets a particle go.
-/// One that is too fast for its substeps is stopped by walls and others, and was never that far back along its velocity.
-const LONGEST_WAY: Real = 0.4;
-
 /// The positions that a density iteration works with.
 pub(super) struct Places {
     gradients: GradientPoint,
@@ -21,7 +16,9 @@ pub(super) struct Places {
     far: Real,
     /// How far behind the prediction the constraint is taken, as a part of the way of the substep.
     behind: Real,
-    /// [`LONGEST_WAY`] in metres.
+    /// What the Courant condition lets a particle go in a substep [m], and the most that the constraint is taken
+    /// behind the prediction: one that is too fast for its substeps is stopped by walls and others, and was never
+    /// that far back along its velocity.
     longest_way: Real,
     /// The positions there, if it is.
     earlier: Vec<Vector>,
@@ -35,7 +32,7 @@ pub(super) struct Places {
 impl Places {
     pub fn new(gradients: GradientPoint, spacing: f64) -> Places {
         let behind = real(gradients.behind().unwrap_or(0.0));
-        let (far, longest_way) = (FAR * real(spacing), LONGEST_WAY * real(spacing));
+        let (far, longest_way) = (FAR * real(spacing), real(COURANT) * real(spacing));
         Places { gradients, far, behind, longest_way, earlier: Vec::new(), value: Vec::new(), gradient: Vec::new() }
     }
 

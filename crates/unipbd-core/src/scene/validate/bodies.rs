@@ -1,12 +1,9 @@
 //! Bodies by themselves: outline, mass, surface, layers, copies.
 
-use std::collections::BTreeMap;
-
-use super::checker::{Allowed, Checker, number};
-use super::materials::excerpt;
+use super::checker::{Allowed, Checker, entries, number};
 use super::motion;
-use crate::scene::BodyKind;
-use crate::scene::{BodyDescription, BodySolver, KeyPath, RotationRule, Side, Tank};
+use super::names::check_unique;
+use crate::scene::{BodyDescription, BodyKind, BodySolver, KeyPath, RotationRule, Side, Tank};
 
 /// More bodies than this are refused.
 const MOST_BODIES: f64 = 200_000.0;
@@ -14,14 +11,11 @@ const COEFFICIENT_HINT: &str = "a Coulomb coefficient, such as 0.5; 0 is slipper
 
 pub(super) fn check(checker: &mut Checker) {
     check_contacts(checker);
-    let mut names = BTreeMap::new();
+    let scene = checker.scene;
+    let bodies = || entries("body", &scene.body);
+    check_unique(checker, "bodies", bodies().map(|(path, body)| (path, body.name.as_str())));
     let mut total = 0.0;
-    for (index, body) in checker.scene.body.iter().enumerate() {
-        let path = KeyPath::entry("body", index);
-        if let Some(first) = (!body.name.is_empty()).then(|| names.insert(&body.name, index)).flatten() {
-            let message = format!("the name \"{}\" is taken by body[{first}]", excerpt(&body.name));
-            checker.problem(path.then("name"), message, "names of bodies must differ");
-        }
+    for (path, body) in bodies() {
         let sound = check_outline(checker, &path, body);
         check_mass(checker, &path, body);
         check_surface(checker, &path, body);
@@ -90,9 +84,7 @@ fn check_shape(checker: &mut Checker, path: KeyPath, body: &BodyDescription) -> 
 
 fn check_mass(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {
     checker.range(path.then("density"), body.density, Allowed::Positive, "mass per area in kg/m^2; 1000 is water");
-    if let Some(mass) = body.mass {
-        checker.range(path.then("mass"), mass, Allowed::Positive, "in kg; left out, it follows from the density");
-    }
+    checker.range(path.then("mass"), body.mass, Allowed::Positive, "in kg; left out, it follows from the density");
 }
 
 fn check_surface(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {

@@ -51,9 +51,10 @@ impl<'a> Checker<'a> {
         self.problems.add_with_hint(path, message, hint);
     }
 
-    /// Notes a number outside its range and says whether it is fine. Numbers that are not finite
-    /// are noted elsewhere.
-    pub(super) fn range(&mut self, path: KeyPath, value: f64, allowed: Allowed, hint: &str) -> bool {
+    /// Notes a number outside its range and says whether it is fine, as one that is left out is. Numbers that are
+    /// not finite are noted elsewhere.
+    pub(super) fn range(&mut self, path: KeyPath, value: impl Into<Option<f64>>, allowed: Allowed, hint: &str) -> bool {
+        let Some(value) = value.into() else { return true };
         if !value.is_finite() {
             return false;
         }
@@ -97,6 +98,14 @@ impl<'a> Checker<'a> {
         }
         axis.is_none()
     }
+}
+
+/// The tables of an array with their paths.
+pub(super) fn entries<'s, T>(
+    array: &'static str,
+    tables: &'s [T],
+) -> impl Iterator<Item = (KeyPath, &'s T)> + use<'s, T> {
+    tables.iter().enumerate().map(move |(index, table)| (KeyPath::entry(array, index), table))
 }
 
 /// A number as one would write it: no rounding noise, no rows of zeros.

@@ -1,16 +1,12 @@
 //! Joints, and the names of bodies they refer to.
 
-use super::checker::{Allowed, Checker};
-use super::materials::excerpt;
-use crate::scene::{JointDescription, JointRule, KeyPath, nearest};
+use super::checker::{Allowed, Checker, entries};
+use super::names::{excerpt, hint_for_unknown};
+use crate::scene::{JointDescription, JointRule, KeyPath};
 
 pub(super) fn check(checker: &mut Checker) {
-    if checker.scene.joint.is_empty() {
-        return;
-    }
     let names = checker.scene.body_names();
-    for (index, joint) in checker.scene.joint.iter().enumerate() {
-        let path = KeyPath::entry("joint", index);
+    for (path, joint) in entries("joint", &checker.scene.joint) {
         check_body(checker, path.then("body"), &joint.body, &names);
         if let Some(other) = &joint.other {
             check_body(checker, path.then("other"), other, &names);
@@ -31,25 +27,18 @@ pub(super) fn check_body(checker: &mut Checker, path: KeyPath, name: &str, names
     if names.iter().any(|known| known == name) {
         return;
     }
-    let hint = match nearest(name, names.iter().map(String::as_str)) {
-        Some(near) => format!("did you mean \"{near}\"?"),
-        None if names.is_empty() => "the scene has no [[body]]".to_owned(),
-        None => format!("the bodies are {}", list(names)),
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let hint = match names.is_empty() {
+        true => "the scene has no [[body]]".to_owned(),
+        false => hint_for_unknown(name, &names, "bodies"),
     };
     checker.problem(path, format!("there is no body \"{}\"", excerpt(name)), hint);
-}
-
-fn list(names: &[String]) -> String {
-    let shown: Vec<String> = names.iter().take(8).map(|name| format!("\"{}\"", excerpt(name))).collect();
-    shown.join(", ") + if names.len() > shown.len() { ", ..." } else { "" }
 }
 
 fn check_values(checker: &mut Checker, path: &KeyPath, joint: &JointDescription) {
     checker.range(path.then("compliance"), joint.compliance, Allowed::NotNegative, "in m/N; 0 is rigid");
     checker.range(path.then("motor_torque"), joint.motor_torque, Allowed::Positive, "in N m; left out, no limit");
-    if let Some(length) = joint.length {
-        checker.range(path.then("length"), length, Allowed::Positive, "in metres; left out, as the scene starts");
-    }
+    checker.range(path.then("length"), joint.length, Allowed::Positive, "in metres; left out, as the scene starts");
     if joint.kind == JointRule::Hinge {
         let apart = joint.other_at.is_some_and(|other| other != joint.at);
         let given = [("length", joint.length.is_some()), ("other_at", apart), ("compliance", joint.compliance != 0.0)];

@@ -1,22 +1,22 @@
 //! Liquids, gases, smokes, and the names by which others refer to them.
 
-use std::collections::BTreeMap;
-
-use super::checker::{Allowed, Checker};
+use super::checker::{Allowed, Checker, entries};
+use super::names::{check_unique, excerpt, hint_for_unknown, list};
 use crate::phase::{MaterialIndex, Phase};
-use crate::scene::{KeyPath, Liquid, MaterialRef, Scene, nearest};
+use crate::scene::{KeyPath, Liquid, MaterialRef, Scene};
 
-const VISCOSITY_HINT: &str = "the fraction of velocity differences smoothed per substep";
+const XSPH_HINT: &str = "the fraction of velocity differences smoothed per substep";
 const NU_HINT: &str = "in m^2/s, such as 1e-6 for water; 0 is none";
 const QUADRATIC_HINT: &str = "in 1/m: a particle alone falls at sqrt(g/coefficient)";
+const MASS_HINT: &str = "in kg; left out, density times the squared spacing";
+const LIFETIME_HINT: &str = "in seconds; left out, particles stay";
 const DENSITY_HINT: &str = "mass per area in kg/m^2, such as 1000.0 for water or 1.2 for air";
 
 pub(super) fn check(checker: &mut Checker) {
-    for (index, liquid) in checker.scene.liquid.iter().enumerate() {
-        let path = KeyPath::entry("liquid", index);
+    for (path, liquid) in entries("liquid", &checker.scene.liquid) {
         checker.range(path.then("density"), liquid.density, Allowed::Positive, DENSITY_HINT);
-        check_mass(checker, &path, liquid.particle_mass);
-        checker.range(path.then("viscosity"), liquid.viscosity, Allowed::Between(0.0, 1.0), VISCOSITY_HINT);
+        checker.range(path.then("particle_mass"), liquid.particle_mass, Allowed::Positive, MASS_HINT);
+        checker.range(path.then("xsph"), liquid.xsph, Allowed::Between(0.0, 1.0), XSPH_HINT);
         let nu = liquid.kinematic_viscosity;
         checker.range(path.then("kinematic_viscosity"), nu, Allowed::NotNegative, NU_HINT);
         checker.range(path.then("cohesion"), liquid.cohesion, Allowed::NotNegative, "an acceleration in m/s^2");
@@ -27,17 +27,13 @@ pub(super) fn check(checker: &mut Checker) {
         }
     }
     check_gases(checker);
-    for (index, smoke) in checker.scene.smoke.iter().enumerate() {
-        check_lifetime(checker, &KeyPath::entry("smoke", index), smoke.lifetime);
+    for (path, smoke) in entries("smoke", &checker.scene.smoke) {
+        checker.range(path.then("lifetime"), smoke.lifetime, Allowed::Positive, LIFETIME_HINT);
     }
-    for (index, solid) in checker.scene.solid.iter().enumerate() {
-        checker.range(KeyPath::entry("solid", index).then("density"), solid.density, Allowed::Positive, DENSITY_HINT);
+    for (path, solid) in entries("solid", &checker.scene.solid) {
+        checker.range(path.then("density"), solid.density, Allowed::Positive, DENSITY_HINT);
     }
-    let mut seen = BTreeMap::new();
-    for (path, material) in with_paths(checker.scene) {
-        check_name(checker, &path, material.name(), &mut seen);
-        check_color(checker, &path, material.color());
-    }
+    check_names(checker);
     let (count, most) = (checker.scene.materials().count(), usize::from(MaterialIndex::MAX));
     if count > most {
         checker.problems.add(KeyPath::default(), format!("has {count} materials, at most {most} are possible"));
@@ -54,46 +50,32 @@ fn check_sleep(checker: &mut Checker, path: &KeyPath, liquid: &Liquid) {
 }
 
 fn check_gases(checker: &mut Checker) {
-    for (index, gas) in checker.scene.gas.iter().enumerate() {
-        let path = KeyPath::entry("gas", index);
+    for (path, gas) in entries("gas", &checker.scene.gas) {
         checker.range(path.then("density"), gas.density, Allowed::Positive, DENSITY_HINT);
-        check_mass(checker, &path, gas.particle_mass);
+        checker.range(path.then("particle_mass"), gas.particle_mass, Allowed::Positive, MASS_HINT);
         checker.range(path.then("drag"), gas.drag, Allowed::NotNegative, "a rate in 1/s; 0 is no drag");
         checker.range(path.then("quadratic_drag"), gas.quadratic_drag, Allowed::NotNegative, QUADRATIC_HINT);
         checker.range(path.then("conductivity"), gas.conductivity, Allowed::NotNegative, "a diffusivity in m^2/s");
-        checker.range(path.then("viscosity"), gas.viscosity, Allowed::Between(0.0, 1.0), VISCOSITY_HINT);
+        checker.range(path.then("xsph"), gas.xsph, Allowed::Between(0.0, 1.0), XSPH_HINT);
         checker.range(path.then("kinematic_viscosity"), gas.kinematic_viscosity, Allowed::NotNegative, NU_HINT);
-        check_lifetime(checker, &path, gas.lifetime);
-        if let Some(radius) = gas.keep_radius {
-            let hint = "in metres, at least as large as the sheath is thick; left out, all gas stays";
-            checker.range(path.then("keep_radius"), radius, Allowed::Positive, hint);
-        }
+        checker.range(path.then("lifetime"), gas.lifetime, Allowed::Positive, LIFETIME_HINT);
+        let hint = "in metres, at least as large as the sheath is thick; left out, all gas stays";
+        checker.range(path.then("keep_radius"), gas.keep_radius, Allowed::Positive, hint);
         checker.range(path.then("keep_age"), gas.keep_age, Allowed::NotNegative, "in seconds");
     }
 }
 
-fn check_mass(checker: &mut Checker, path: &KeyPath, mass: Option<f64>) {
-    if let Some(mass) = mass {
-        let hint = "in kg; left out, density times the squared spacing";
-        checker.range(path.then("particle_mass"), mass, Allowed::Positive, hint);
+/// Names and colours of all materials.
+fn check_names(checker: &mut Checker) {
+    let materials = with_paths(checker.scene);
+    for (path, material) in &materials {
+        if material.name().trim().is_empty() {
+            checker.problem(path.then("name"), "a material needs a name", "add a line such as name = \"water\"");
+        }
+        check_color(checker, path, material.color());
     }
-}
-
-fn check_lifetime(checker: &mut Checker, path: &KeyPath, lifetime: Option<f64>) {
-    if let Some(lifetime) = lifetime {
-        checker.range(path.then("lifetime"), lifetime, Allowed::Positive, "in seconds; left out, particles stay");
-    }
-}
-
-fn check_name(checker: &mut Checker, path: &KeyPath, name: &str, seen: &mut BTreeMap<String, KeyPath>) {
-    if name.trim().is_empty() {
-        checker.problem(path.then("name"), "a material needs a name", "add a line such as name = \"water\"");
-    } else if let Some(first) = seen.get(name) {
-        let message = format!("the name \"{name}\" is taken by {first}");
-        checker.problem(path.then("name"), message, "names of materials must differ");
-    } else {
-        seen.insert(name.to_owned(), path.clone());
-    }
+    let named = materials.into_iter().map(|(path, material)| (path, material.name()));
+    check_unique(checker, "materials", named.filter(|(_, name)| !name.trim().is_empty()));
 }
 
 fn check_color(checker: &mut Checker, path: &KeyPath, color: Option<&str>) {
@@ -137,33 +119,17 @@ pub(super) fn check_reference(checker: &mut Checker, path: KeyPath, name: &str, 
 
 fn unknown_hint(scene: &Scene, name: &str, wanted: &[Phase]) -> String {
     let names: Vec<&str> = scene.materials().map(|material| material.name()).collect();
-    if let Some(near) = nearest(name, names.iter().copied()) {
-        return format!("did you mean \"{near}\"?");
-    }
     if names.is_empty() {
         let table = wanted.first().map_or("liquid", |phase| phase.name());
         return format!("add a table [[{table}]] with name = \"{}\"", excerpt(name));
     }
-    list("the materials are", &names)
+    hint_for_unknown(name, &names, "materials")
 }
 
 fn wrong_phase_hint(scene: &Scene, wanted: &[Phase]) -> String {
     let fitting = scene.materials().filter(|material| wanted.contains(&material.phase()));
     let names: Vec<&str> = fitting.map(|material| material.name()).collect();
     if names.is_empty() { format!("the scene has no {}", wanted[0].name()) } else { list("possible are", &names) }
-}
-
-fn list(start: &str, names: &[&str]) -> String {
-    let shown: Vec<String> = names.iter().take(8).map(|name| format!("\"{}\"", excerpt(name))).collect();
-    let more = if names.len() > shown.len() { ", ..." } else { "" };
-    format!("{start} {}{more}", shown.join(", "))
-}
-
-/// The start of a word from the scene, short enough for a message.
-pub(super) fn excerpt(word: &str) -> String {
-    let clean = |letter: char| if letter.is_control() { ' ' } else { letter };
-    let start: String = word.chars().take(40).map(clean).collect();
-    if start.chars().count() < word.chars().count() { start + "..." } else { start }
 }
 
 fn with_paths(scene: &Scene) -> Vec<(KeyPath, MaterialRef<'_>)> {

@@ -12,6 +12,7 @@ mod geometry;
 mod joints;
 mod materials;
 mod motion;
+mod names;
 mod overlap;
 mod placement;
 mod regions;

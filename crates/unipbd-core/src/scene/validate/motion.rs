@@ -1,8 +1,7 @@
 //! Scripts of kinematic bodies.
 
 use super::checker::{Allowed, Checker, number};
-use crate::scene::BodyKind;
-use crate::scene::{BodyDescription, KeyPath, MotionDescription};
+use crate::scene::{BodyDescription, BodyKind, KeyPath, MotionDescription};
 
 pub(super) fn check(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {
     let Some(motion) = &body.motion else { return };

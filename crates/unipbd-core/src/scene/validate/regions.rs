@@ -1,6 +1,6 @@
 //! Injectors, sinks, heaters, and waves.
 
-use super::checker::{Allowed, Checker, number};
+use super::checker::{Allowed, Checker, entries, number};
 use super::materials::check_reference;
 use crate::phase::Phase;
 use crate::scene::{KeyPath, Region};
@@ -9,26 +9,21 @@ const LOOSE: [Phase; 3] = [Phase::Liquid, Phase::Gas, Phase::Smoke];
 
 pub(super) fn check(checker: &mut Checker) {
     let scene = checker.scene;
-    for (index, injector) in scene.injector.iter().enumerate() {
-        let path = KeyPath::entry("injector", index);
+    for (path, injector) in entries("injector", &scene.injector) {
         check_reference(checker, path.then("material"), &injector.material, &LOOSE);
         check_region(checker, &path, &injector.region);
         checker.range(path.then("rate"), injector.rate, Allowed::Between(0.0, 1e7), "particles per second");
         check_schedule(checker, &path, injector.start, injector.stop);
     }
-    for (index, sink) in scene.sink.iter().enumerate() {
-        let path = KeyPath::entry("sink", index);
+    for (path, sink) in entries("sink", &scene.sink) {
         for (number, material) in sink.materials.iter().enumerate() {
             check_reference(checker, path.then("materials").then_index(number), material, &LOOSE);
         }
         check_region(checker, &path, &sink.region);
-        if let Some(rate) = sink.rate {
-            checker.range(path.then("rate"), rate, Allowed::Positive, "particles per second; left out, no limit");
-        }
+        checker.range(path.then("rate"), sink.rate, Allowed::Positive, "particles per second; left out, no limit");
         check_schedule(checker, &path, sink.start, sink.stop);
     }
-    for (index, heater) in scene.heater.iter().enumerate() {
-        let path = KeyPath::entry("heater", index);
+    for (path, heater) in entries("heater", &scene.heater) {
         check_region(checker, &path, &heater.region);
         checker.range(path.then("rate"), heater.rate, Allowed::NotNegative, "a rate in 1/s, such as 20.0");
         if scene.gas.is_empty() {
@@ -39,8 +34,7 @@ pub(super) fn check(checker: &mut Checker) {
 }
 
 fn check_waves(checker: &mut Checker) {
-    for (index, wave) in checker.scene.wave.iter().enumerate() {
-        let path = KeyPath::entry("wave", index);
+    for (path, wave) in entries("wave", &checker.scene.wave) {
         let hint = "in metres, at least a few spacings";
         if checker.range(path.then("wavelength"), wave.wavelength, Allowed::Positive, hint) {
             let steepest = 0.1 * wave.wavelength;
@@ -78,7 +72,8 @@ fn check_region(checker: &mut Checker, path: &KeyPath, region: &Region) {
     }
 }
 
-fn check_schedule(checker: &mut Checker, path: &KeyPath, start: f64, stop: Option<f64>) {
+/// Notes a start before the run, and a stop that does not come after the start.
+pub(super) fn check_schedule(checker: &mut Checker, path: &KeyPath, start: f64, stop: Option<f64>) {
     checker.range(path.then("start"), start, Allowed::NotNegative, "in seconds; a run starts at 0");
     if let Some(stop) = stop.filter(|stop| *stop <= start) {
         let message = format!("must come after the start at {} s, found {} s", number(start), number(stop));

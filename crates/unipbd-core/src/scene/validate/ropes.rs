@@ -1,15 +1,13 @@
 //! Ropes.
 
-use super::checker::{Allowed, Checker, rounded};
+use super::checker::{Allowed, Checker, entries, rounded};
 use super::joints::check_body;
 use super::materials::check_reference;
 use crate::phase::Phase;
-use crate::scene::KeyPath;
 
 pub(super) fn check(checker: &mut Checker) {
     let names = checker.scene.body_names();
-    for (index, rope) in checker.scene.rope.iter().enumerate() {
-        let path = KeyPath::entry("rope", index);
+    for (path, rope) in entries("rope", &checker.scene.rope) {
         check_reference(checker, path.then("material"), &rope.material, &[Phase::Solid, Phase::Liquid]);
         checker.range(path.then("compliance"), rope.compliance, Allowed::NotNegative, "in m/N; 0 does not stretch");
         if let Some(body) = &rope.body {

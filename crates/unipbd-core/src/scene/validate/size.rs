@@ -1,8 +1,8 @@
 //! Bounds on the number of particles and on coordinates.
 
-use super::checker::{Checker, number, rounded};
+use super::checker::{Checker, entries, number, rounded};
 use super::settings::LONGEST_DURATION;
-use crate::scene::layout::{block_counts, disc_count};
+use crate::scene::layout::particle_counts;
 use crate::scene::{KeyPath, Scene};
 
 /// Scenes with this many particles are refused before anything is allocated.
@@ -12,19 +12,11 @@ pub(crate) const FARTHEST: f64 = 1e6;
 
 pub(super) fn check(checker: &mut Checker) {
     let Some(spacing) = checker.spacing else { return };
-    checker.size_is_sane = check_counts(checker, spacing) && check_coordinates(checker, spacing);
+    checker.size_is_sane = check_counts(checker) && check_coordinates(checker, spacing);
 }
 
-fn check_counts(checker: &mut Checker, spacing: f64) -> bool {
-    let scene = checker.scene;
-    let blocks = scene.block.iter().map(|block| block_counts(block, spacing).into_iter().product::<f64>());
-    let discs = scene.disc.iter().map(|disc| disc_count(disc, spacing));
-    let points = scene.points.iter().map(|points| points.positions.len() as f64);
-    let ropes = scene.rope.iter().map(|rope| rope.pieces(spacing) + 1.0);
-    let paths = |kind: &'static str| (0..).map(move |index| KeyPath::entry(kind, index));
-    let filled = paths("block").zip(blocks).chain(paths("disc").zip(discs));
-    let counts: Vec<(KeyPath, f64)> =
-        filled.chain(paths("points").zip(points)).chain(paths("rope").zip(ropes)).collect();
+fn check_counts(checker: &mut Checker) -> bool {
+    let counts = particle_counts(checker.scene);
     let mut sane = true;
     for (path, count) in counts.iter().filter(|(_, count)| *count >= TOO_MANY_PARTICLES && count.is_finite()) {
         checker.problem(path.clone(), too_many("holds", *count), "make it smaller or raise `spacing`");
@@ -79,40 +71,40 @@ fn check_coordinates(checker: &mut Checker, spacing: f64) -> bool {
 /// Every place of the scene.
 fn points(scene: &Scene) -> Vec<(KeyPath, [f64; 2])> {
     let mut points = Vec::new();
-    let mut add = |kind: &str, index, key: &str, point| points.push((KeyPath::entry(kind, index).then(key), point));
-    for (index, block) in scene.block.iter().enumerate() {
-        add("block", index, "min", block.min);
-        add("block", index, "max", block.max);
+    let mut add = |path: &KeyPath, key: &str, point| points.push((path.then(key), point));
+    for (path, block) in entries("block", &scene.block) {
+        add(&path, "min", block.min);
+        add(&path, "max", block.max);
     }
-    for (index, disc) in scene.disc.iter().enumerate() {
-        add("disc", index, "center", disc.center);
-        add("disc", index, "radius", [disc.radius, 0.0]);
+    for (path, disc) in entries("disc", &scene.disc) {
+        add(&path, "center", disc.center);
+        add(&path, "radius", [disc.radius, 0.0]);
     }
-    for (index, set) in scene.points.iter().enumerate() {
+    for (path, set) in entries("points", &scene.points) {
         let reach = set.positions.iter().flatten().fold(0.0, |reach: f64, value| reach.max(value.abs()));
-        add("points", index, "positions", [reach, 0.0]);
+        add(&path, "positions", [reach, 0.0]);
     }
-    for (index, emitter) in scene.emitter.iter().enumerate() {
-        add("emitter", index, "position", emitter.position);
-        add("emitter", index, "width", [emitter.width, 0.0]);
+    for (path, emitter) in entries("emitter", &scene.emitter) {
+        add(&path, "position", emitter.position);
+        add(&path, "width", [emitter.width, 0.0]);
     }
-    for (index, wall) in scene.half_plane.iter().enumerate() {
-        add("half_plane", index, "point", wall.point);
+    for (path, wall) in entries("half_plane", &scene.half_plane) {
+        add(&path, "point", wall.point);
     }
-    for (index, tank) in scene.tank.iter().enumerate() {
-        add("tank", index, "min", tank.min);
-        add("tank", index, "max", tank.max);
+    for (path, tank) in entries("tank", &scene.tank) {
+        add(&path, "min", tank.min);
+        add(&path, "max", tank.max);
     }
-    for (index, obstacle) in scene.obstacle.iter().enumerate() {
-        add("obstacle", index, "min", obstacle.min);
-        add("obstacle", index, "max", obstacle.max);
+    for (path, obstacle) in entries("obstacle", &scene.obstacle) {
+        add(&path, "min", obstacle.min);
+        add(&path, "max", obstacle.max);
     }
-    for (index, body) in scene.body.iter().enumerate() {
-        add("body", index, "position", body.position);
+    for (path, body) in entries("body", &scene.body) {
+        add(&path, "position", body.position);
     }
-    for (index, rope) in scene.rope.iter().enumerate() {
-        add("rope", index, "from", rope.from);
-        add("rope", index, "to", rope.to);
+    for (path, rope) in entries("rope", &scene.rope) {
+        add(&path, "from", rope.from);
+        add(&path, "to", rope.to);
     }
     let domain = &scene.domain;
     let extents = [("periodic_x", domain.periodic_x), ("periodic_y", domain.periodic_y)];

@@ -1,9 +1,9 @@
 //! Blocks, discs and emitters by themselves.
 
-use std::collections::BTreeMap;
-
-use super::checker::{Allowed, Checker, number, rounded};
-use super::materials::{check_reference, excerpt};
+use super::checker::{Allowed, Checker, entries, number, rounded};
+use super::materials::check_reference;
+use super::names::check_unique;
+use super::regions::check_schedule;
 use crate::phase::Phase;
 use crate::scene::{Emitter, KeyPath, PointMotion, Points, Substeps};
 
@@ -12,8 +12,7 @@ const JITTER_HINT: &str = "a fraction of the spacing, such as 0.1";
 
 pub(super) fn check(checker: &mut Checker) {
     let scene = checker.scene;
-    for (index, block) in scene.block.iter().enumerate() {
-        let path = KeyPath::entry("block", index);
+    for (path, block) in entries("block", &scene.block) {
         check_reference(checker, path.then("material"), &block.material, &FLUIDS);
         if checker.corners(&path, block.min, block.max) {
             let [width, height] = [0, 1].map(|axis| block.max[axis] - block.min[axis]);
@@ -22,16 +21,15 @@ pub(super) fn check(checker: &mut Checker) {
         }
         check_filling(checker, &path, block.velocity, block.jitter);
     }
-    for (index, disc) in scene.disc.iter().enumerate() {
-        let path = KeyPath::entry("disc", index);
+    for (path, disc) in entries("disc", &scene.disc) {
         check_reference(checker, path.then("material"), &disc.material, &FLUIDS);
         if checker.range(path.then("radius"), disc.radius, Allowed::Positive, "a length in metres") {
             checker.at_least_one_spacing(path.then("radius"), disc.radius, "the radius");
         }
         check_filling(checker, &path, disc.velocity, disc.jitter);
     }
-    for (index, points) in scene.points.iter().enumerate() {
-        check_points(checker, &KeyPath::entry("points", index), points);
+    for (path, points) in entries("points", &scene.points) {
+        check_points(checker, &path, points);
     }
     check_emitters(checker);
     let none = scene.block.is_empty() && scene.disc.is_empty() && scene.emitter.is_empty() && scene.body.is_empty();
@@ -69,17 +67,14 @@ fn check_filling(checker: &mut Checker, path: &KeyPath, velocity: [f64; 2], jitt
 }
 
 fn check_emitters(checker: &mut Checker) {
-    let mut names = BTreeMap::new();
-    for (index, emitter) in checker.scene.emitter.iter().enumerate() {
-        let path = KeyPath::entry("emitter", index);
-        if let Some(first) = (!emitter.name.is_empty()).then(|| names.insert(&emitter.name, index)).flatten() {
-            let message = format!("the name \"{}\" is taken by emitter[{first}]", excerpt(&emitter.name));
-            checker.problem(path.then("name"), message, "names of emitters must differ");
-        }
+    let scene = checker.scene;
+    let emitters = || entries("emitter", &scene.emitter);
+    check_unique(checker, "emitters", emitters().map(|(path, emitter)| (path, emitter.name.as_str())));
+    for (path, emitter) in emitters() {
         check_reference(checker, path.then("material"), &emitter.material, &FLUIDS);
         check_nozzle(checker, &path, emitter);
         check_sheath_and_smoke(checker, &path, emitter);
-        check_schedule(checker, &path, emitter);
+        check_schedule(checker, &path, emitter.start, emitter.stop);
     }
 }
 
@@ -113,16 +108,6 @@ fn check_sheath_and_smoke(checker: &mut Checker, path: &KeyPath, emitter: &Emitt
         let markers = f64::from(smoke.per_particle);
         let hint = "3 or 4 look smooth; leave out `smoke` for none";
         checker.range(path.then("per_particle"), markers, Allowed::Between(1.0, 1000.0), hint);
-    }
-}
-
-fn check_schedule(checker: &mut Checker, path: &KeyPath, emitter: &Emitter) {
-    checker.range(path.then("start"), emitter.start, Allowed::NotNegative, "in seconds; a run starts at 0");
-    if let Some(stop) = emitter.stop
-        && stop <= emitter.start
-    {
-        let message = format!("must come after the start at {} s, found {} s", number(emitter.start), number(stop));
-        checker.problem(path.then("stop"), message, "leave it out for an emitter that never stops");
     }
 }
 

@@ -1,9 +1,8 @@
 //! Half-planes, tanks and obstacles by themselves and on periodic axes.
 
-use std::collections::BTreeMap;
-
-use super::checker::{Allowed, Checker};
+use super::checker::{Allowed, Checker, entries};
 use super::geometry::AXES;
+use super::names::check_unique;
 use crate::scene::{KeyPath, Side};
 
 const FRICTION_HINT: &str = "a Coulomb coefficient; 0 is a slippery wall";
@@ -12,8 +11,7 @@ pub(super) fn check(checker: &mut Checker) {
     check_names(checker);
     check_half_planes(checker);
     check_tanks(checker);
-    for (index, obstacle) in checker.scene.obstacle.iter().enumerate() {
-        let path = KeyPath::entry("obstacle", index);
+    for (path, obstacle) in entries("obstacle", &checker.scene.obstacle) {
         checker.range(path.then("friction"), obstacle.friction, Allowed::NotNegative, FRICTION_HINT);
         if checker.corners(&path, obstacle.min, obstacle.max) {
             check_thickness(checker, &path, obstacle.min, obstacle.max);
@@ -24,23 +22,14 @@ pub(super) fn check(checker: &mut Checker) {
 /// Walls that are measured have names that tell them apart.
 fn check_names(checker: &mut Checker) {
     let scene = checker.scene;
-    let planes = scene.half_plane.iter().enumerate().map(|(n, wall)| (KeyPath::entry("half_plane", n), &wall.name));
-    let tanks = scene.tank.iter().enumerate().map(|(n, wall)| (KeyPath::entry("tank", n), &wall.name));
-    let boxes = scene.obstacle.iter().enumerate().map(|(n, wall)| (KeyPath::entry("obstacle", n), &wall.name));
-    let mut seen = BTreeMap::new();
-    for (path, name) in planes.chain(tanks).chain(boxes).filter(|(_, name)| !name.is_empty()) {
-        if let Some(first) = seen.get(name) {
-            let message = format!("the name \"{name}\" is taken by {first}");
-            checker.problem(path.then("name"), message, "names of walls must differ");
-        } else {
-            seen.insert(name, path);
-        }
-    }
+    let planes = entries("half_plane", &scene.half_plane).map(|(path, wall)| (path, wall.name.as_str()));
+    let tanks = entries("tank", &scene.tank).map(|(path, wall)| (path, wall.name.as_str()));
+    let boxes = entries("obstacle", &scene.obstacle).map(|(path, wall)| (path, wall.name.as_str()));
+    check_unique(checker, "walls", planes.chain(tanks).chain(boxes));
 }
 
 fn check_half_planes(checker: &mut Checker) {
-    for (index, wall) in checker.scene.half_plane.iter().enumerate() {
-        let path = KeyPath::entry("half_plane", index);
+    for (path, wall) in entries("half_plane", &checker.scene.half_plane) {
         checker.range(path.then("friction"), wall.friction, Allowed::NotNegative, FRICTION_HINT);
         let hint = "it points from the wall to the particles, such as [0.0, 1.0] for a floor";
         checker.direction(path.then("normal"), wall.normal, hint);
@@ -59,8 +48,7 @@ fn check_half_planes(checker: &mut Checker) {
 }
 
 fn check_tanks(checker: &mut Checker) {
-    for (index, tank) in checker.scene.tank.iter().enumerate() {
-        let path = KeyPath::entry("tank", index);
+    for (path, tank) in entries("tank", &checker.scene.tank) {
         checker.range(path.then("friction"), tank.friction, Allowed::NotNegative, FRICTION_HINT);
         if !checker.corners(&path, tank.min, tank.max) {
             continue;

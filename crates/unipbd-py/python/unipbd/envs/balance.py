@@ -21,7 +21,7 @@ DEPTH, POOL = 0.6, 2.0
 
 def _scene() -> Scene:
     scene = Scene(name="Balance", spacing=0.06, fps=20)
-    scene.add_liquid("water", viscosity=0.05)
+    scene.add_liquid("water", xsph=0.05)
     scene.add_block("water", min=(0, 0), max=(POOL, DEPTH))
     scene.add_tank(min=(0, 0), max=(POOL, 1.6))
     scene.add_body("float", at=(POOL / 2, DEPTH), size=(WIDTH, HEIGHT), density=DENSITY)

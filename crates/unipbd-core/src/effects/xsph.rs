@@ -8,27 +8,27 @@ use crate::scene::{MaterialRef, Scene};
 
 /// XSPH viscosity (Schechter & Bridson 2012; Macklin & Müller 2013, equation 17):
 /// v_i += c sum_j V (v_j - v_i) W_ij, with the reduced mass of each pair so that momentum is kept.
-pub struct Viscosity {
+pub struct Xsph {
     kernel: Kernel,
     volume: Real,
     strength: Vec<Real>,
-    /// The viscosity of all dense particles, where they are of one material.
+    /// The strength of all dense particles, where they are of one material.
     uniform: Option<Real>,
-    /// Viscosity times volume, and inverse mass, by row.
+    /// Strength times volume, and inverse mass, by row.
     traits: Vec<Vector>,
     records: Records,
 }
 
-impl Viscosity {
-    /// The viscosities of a scene, or nothing where all are 0.
+impl Xsph {
+    /// The XSPH of a scene, or nothing where all are 0.
     pub fn new(scene: &Scene) -> Option<Self> {
         let of = |material: MaterialRef<'_>| match material {
-            MaterialRef::Liquid(liquid) => real(liquid.viscosity),
-            MaterialRef::Gas(gas) => real(gas.viscosity),
+            MaterialRef::Liquid(liquid) => real(liquid.xsph),
+            MaterialRef::Gas(gas) => real(gas.xsph),
             MaterialRef::Smoke(_) | MaterialRef::Solid(_) | MaterialRef::Rigid => 0.0,
         };
         let strength: Vec<Real> = scene.materials().map(of).collect();
-        any(&strength).then(|| Viscosity {
+        any(&strength).then(|| Xsph {
             kernel: Kernel::new(scene.solver.kernel_radius * scene.spacing),
             volume: real(scene.spacing * scene.spacing),
             uniform: uniform(scene, &strength),
@@ -45,9 +45,9 @@ fn uniform(scene: &Scene, strength: &[Real]) -> Option<Real> {
     (dense.next().is_none() && scene.emitter.is_empty() && scene.body.is_empty()).then_some(first)
 }
 
-impl Effect for Viscosity {
+impl Effect for Xsph {
     fn name(&self) -> &'static str {
-        "viscosity"
+        "xsph"
     }
 
     fn memory_bytes(&self) -> usize {
@@ -62,8 +62,8 @@ impl Effect for Viscosity {
     }
 }
 
-impl Viscosity {
-    /// All dense particles have one mass and one viscosity.
+impl Xsph {
+    /// All dense particles have one mass and one strength.
     fn apply_uniform(&mut self, now: Substep<'_>, strength: Real, out: &mut Changes) {
         let (positions, velocities) = (now.particles.positions(), now.particles.velocities());
         let weights = Weights::Uniform(self.volume * strength);
