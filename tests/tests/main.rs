@@ -3,6 +3,7 @@
 mod architecture;
 mod conservation;
 mod determinism;
+mod documents;
 mod emitters;
 mod filled_gas;
 mod import_circles;

@@ -87,6 +87,7 @@ fn frame_dict(py: Python<'_>, frame: Frame) -> PyResult<Bound<'_, PyDict>> {
     dict.set_item("bodies", bodies)?;
     let events = frame.events.iter().map(|event| (event.time, severity(event.severity), event.message.clone()));
     dict.set_item("events", PyList::new(py, events)?)?;
-    dict.set_item("diagnostics", frame.diagnostics.map(|numbers| diagnostics::recorded(py, &numbers)).transpose()?)?;
+    let recorded = |numbers| diagnostics::recorded(py, &numbers, frame.state_hash);
+    dict.set_item("diagnostics", frame.diagnostics.map(recorded).transpose()?)?;
     Ok(dict)
 }

@@ -84,8 +84,9 @@ pub struct RunArgs {
     ///
     /// A quantity, < or >, and a number: density_error (largest, as a fraction), speed (largest)
     /// [m/s], energy (kinetic and potential) [J], time [s], particles, the count of a phase
-    /// (liquid, gas, smoke, rigid, solid), or a number of the diagnostics by its name, such as
-    /// density_error_mean, pressure_max, kinetic_energy, substeps. Quote it: < and > mean something to a shell.
+    /// (liquid, gas, smoke, rigid, solid), or any number of the diagnostics by its name, such as
+    /// density_error_mean, pressure_max, momentum_x, substeps (docs/diagnostics.md lists them). Quote it: < and >
+    /// mean something to a shell.
     #[arg(long, value_name = "CONDITION", help_heading = "Running")]
     pub stop_on: Vec<StopCondition>,
     /// Compare the run with the [expect] table of the scene: exit code 5 where it does not hold

@@ -2,41 +2,50 @@
 
 use std::fmt;
 use std::str::FromStr;
+use std::sync::LazyLock;
 
-use unipbd_core::observe::Diagnostics;
+use unipbd_core::observe::{Diagnostics, Quantity, Table};
 use unipbd_core::phase::Phase;
 use unipbd_core::scene::nearest;
 
-type Quantity = fn(&Diagnostics) -> f64;
+/// A number that a condition may name: a column of a quantity.
+#[derive(Debug)]
+struct Column {
+    name: String,
+    quantity: &'static Quantity<Diagnostics>,
+    index: usize,
+}
 
-/// The numbers that a condition may name: the diagnostics, and short names for the usual ones.
-const QUANTITIES: &[(&str, Quantity)] = &[
-    ("density_error", |d| d.density_error_max),
-    ("speed", |d| d.speed_max),
-    ("energy", |d| d.kinetic_energy + d.potential_energy),
-    ("time", |d| d.time),
-    ("frame", |d| d.frame as f64),
-    ("step", |d| d.step as f64),
-    ("substeps", |d| f64::from(d.substeps)),
-    ("substeps_wanted", |d| f64::from(d.substeps_wanted)),
-    ("contact_penetration", |d| d.contact_penetration),
-    ("iterations", |d| f64::from(d.iterations)),
-    ("list_builds", |d| f64::from(d.list_builds)),
-    ("particles", |d| d.particles() as f64),
-    ("liquid", |d| d.count(Phase::Liquid) as f64),
-    ("gas", |d| d.count(Phase::Gas) as f64),
-    ("smoke", |d| d.count(Phase::Smoke) as f64),
-    ("rigid", |d| d.count(Phase::Rigid) as f64),
-    ("solid", |d| d.count(Phase::Solid) as f64),
-    ("density_error_mean", |d| d.density_error_mean),
-    ("density_error_max", |d| d.density_error_max),
-    ("density_error_min", |d| d.density_error_min),
-    ("pressure_max", |d| d.pressure_max),
-    ("kinetic_energy", |d| d.kinetic_energy),
-    ("potential_energy", |d| d.potential_energy),
-    ("angular_momentum", |d| d.angular_momentum),
-    ("speed_max", |d| d.speed_max),
-];
+/// Short names for the usual columns; a phase stands for the number of its particles.
+const SHORT_NAMES: [(&str, &str); 2] = [("density_error", "density_error_max"), ("speed", "speed_max")];
+
+/// Short names, then every number of the diagnostics.
+static COLUMNS: LazyLock<Vec<Column>> = LazyLock::new(|| {
+    let mut columns: Vec<Column> = short_names().filter_map(|(short, name)| column(&short, &name)).collect();
+    let names = Diagnostics::QUANTITIES.iter().flat_map(Quantity::columns);
+    columns.extend(names.filter_map(|name| column(&name, &name)));
+    columns
+});
+
+fn short_names() -> impl Iterator<Item = (String, String)> {
+    let short = SHORT_NAMES.into_iter().map(|(short, name)| (short.to_owned(), name.to_owned()));
+    short.chain(Phase::ALL.map(|phase| (phase.name().to_owned(), format!("count_{}", phase.name()))))
+}
+
+/// The column of this name, to be known by another; `None` where it is no number.
+fn column(known_as: &str, name: &str) -> Option<Column> {
+    Diagnostics::QUANTITIES.iter().find_map(|quantity| {
+        let index = quantity.columns().iter().position(|column| column == name)?;
+        let column = Column { name: known_as.to_owned(), quantity, index };
+        column.read(&Diagnostics::default()).map(|_| column)
+    })
+}
+
+impl Column {
+    fn read(&self, diagnostics: &Diagnostics) -> Option<f64> {
+        (self.quantity.read)(diagnostics).columns().get(self.index).and_then(|value| value.number())
+    }
+}
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Comparison {
@@ -47,8 +56,7 @@ enum Comparison {
 /// A condition such as `density_error>0.05`.
 #[derive(Clone, Copy, Debug)]
 pub struct StopCondition {
-    name: &'static str,
-    quantity: Quantity,
+    column: &'static Column,
     comparison: Comparison,
     threshold: f64,
 }
@@ -56,7 +64,7 @@ pub struct StopCondition {
 impl StopCondition {
     /// The value that meets the condition, if it is met.
     pub fn met_by(&self, diagnostics: &Diagnostics) -> Option<f64> {
-        let value = (self.quantity)(diagnostics);
+        let value = self.column.read(diagnostics)?;
         let met = match self.comparison {
             Comparison::Above => value > self.threshold,
             Comparison::Below => value < self.threshold,
@@ -71,7 +79,7 @@ impl fmt::Display for StopCondition {
             Comparison::Above => '>',
             Comparison::Below => '<',
         };
-        write!(f, "{}{sign}{}", self.name, self.threshold)
+        write!(f, "{}{sign}{}", self.column.name, self.threshold)
     }
 }
 
@@ -82,18 +90,17 @@ impl FromStr for StopCondition {
         let place = text.find(['<', '>']).ok_or("expected a quantity, < or >, and a number: density_error>0.05")?;
         let (name, rest) = (text[..place].trim(), &text[place + 1..]);
         let comparison = if text[place..].starts_with('<') { Comparison::Below } else { Comparison::Above };
-        let &(name, quantity) =
-            QUANTITIES.iter().find(|(known, _)| *known == name).ok_or_else(|| unknown_quantity(name))?;
+        let column = COLUMNS.iter().find(|column| column.name == name).ok_or_else(|| unknown_quantity(name))?;
         let threshold: f64 = rest.trim().parse().map_err(|_| format!("\"{}\" is not a number", rest.trim()))?;
         if threshold.is_nan() {
             return Err("nothing is larger or smaller than NaN".into());
         }
-        Ok(StopCondition { name, quantity, comparison, threshold })
+        Ok(StopCondition { column, comparison, threshold })
     }
 }
 
 fn unknown_quantity(name: &str) -> String {
-    let names: Vec<&str> = QUANTITIES.iter().map(|(known, _)| *known).collect();
+    let names: Vec<&str> = COLUMNS.iter().map(|column| column.name.as_str()).collect();
     let suggestion = nearest(name, names.iter().copied());
     let suggestion = suggestion.map_or(";".to_owned(), |known| format!("; did you mean \"{known}\"?"));
     format!("unknown quantity \"{name}\"{suggestion} known are {}", names.join(", "))
@@ -106,24 +113,13 @@ mod tests {
 
     fn diagnostics() -> Diagnostics {
         Diagnostics {
-            time: 1.5,
-            frame: 90,
-            step: 720,
-            substeps: 8,
-            iterations: 8,
-            list_builds: 2,
-            count_by_phase: [800, 0, 0, 0, 0],
-            density_error_mean: 0.002,
+            counts: [800, 0, 0, 0, 0],
             density_error_max: 0.06,
             density_error_min: -0.4,
-            pressure_max: 40.0,
             kinetic_energy: 5.0,
             potential_energy: 7.0,
-            momentum: Vector64::ZERO,
-            angular_momentum: 0.0,
+            momentum: Vector64::new(1.0, -2.0),
             speed_max: 3.0,
-            materials: Vec::new(),
-            groups: Vec::new(),
             ..Diagnostics::default()
         }
     }
@@ -136,7 +132,25 @@ mod tests {
         assert_eq!(met("energy<12.5"), Some(12.0));
         assert_eq!(met("speed>2"), Some(3.0));
         assert_eq!(met("gas<1"), Some(0.0));
+        assert_eq!(met("liquid>1"), met("count_liquid>1"));
+        assert_eq!(met("particles>1"), Some(800.0));
+        assert_eq!(met("momentum_y<-1"), Some(-2.0));
         assert_eq!(met("density_error_min<-0.5"), None);
+    }
+
+    #[test]
+    fn every_number_of_the_diagnostics_can_be_named() {
+        let mut words = Vec::new();
+        for quantity in Diagnostics::QUANTITIES {
+            for (name, value) in quantity.columns().iter().zip((quantity.read)(&diagnostics()).columns()) {
+                match (format!("{name}>-1e9").parse::<StopCondition>(), value.number()) {
+                    (Ok(condition), Some(number)) => assert_eq!(condition.met_by(&diagnostics()), Some(number)),
+                    (Err(_), None) => words.push(name.clone()),
+                    (parsed, _) => panic!("{name}: {parsed:?}"),
+                }
+            }
+        }
+        assert_eq!(words, ["substeps_reason"]);
     }
 
     #[test]

@@ -6,9 +6,9 @@ use unipbd_core::observe::{Event, Severity};
 use unipbd_core::phase::{MaterialIndex, Phase};
 use unipbd_core::rigid::{Body, BodyKind, CollisionFilter, Surface};
 
-use super::{DiagnosticsRecord, Frame};
+use super::Frame;
 use crate::record::schema::{Bodies, BodyShape, BodyState, ParticleColumns};
-use crate::record::{Level, Log, POINT_STRIDE, PointCloud, Topic, kind_name, unpack_position};
+use crate::record::{Level, Log, POINT_STRIDE, PointCloud, Topic, kind_name, read_diagnostics, unpack_position};
 use crate::snapshot::Snapshot;
 
 /// Collects the messages of a frame, and keeps what a log writes only when it changes.
@@ -44,7 +44,10 @@ impl Assembler {
             Topic::Particles => return self.complete(time, &decode(topic, data)?).map(Some),
             Topic::Columns => self.take_columns(decode(topic, data)?)?,
             Topic::Bodies => self.take_bodies(decode(topic, data)?)?,
-            Topic::Diagnostics => self.frame.diagnostics = Some(decode::<DiagnosticsRecord>(topic, data)?),
+            Topic::Diagnostics => {
+                let (diagnostics, hash) = read_diagnostics(data).map_err(|error| undecodable(topic, &error))?;
+                (self.frame.diagnostics, self.frame.state_hash) = (Some(diagnostics), hash);
+            }
             Topic::Log => self.frame.events.push(event(&decode(topic, data)?)),
             // The same again, for viewers.
             Topic::Boundary | Topic::BodySamples(_) | Topic::Scene | Topic::Transforms => {}
@@ -118,7 +121,11 @@ impl Assembler {
 }
 
 fn decode<M: Message + Default>(topic: Topic, data: &[u8]) -> Result<M, String> {
-    M::decode(data).map_err(|error| format!("a message on {} cannot be decoded: {error}", topic.name()))
+    M::decode(data).map_err(|error| undecodable(topic, &error))
+}
+
+fn undecodable(topic: Topic, error: &prost::DecodeError) -> String {
+    format!("a message on {} cannot be decoded: {error}", topic.name())
 }
 
 /// A column of the log: absent where it is empty.

@@ -14,13 +14,12 @@ use std::fs::File;
 use std::path::{Path, PathBuf};
 
 use mcap::records::Record;
-use unipbd_core::observe::Event;
+use unipbd_core::observe::{Diagnostics, Event};
 
 use crate::record::{Fields, Header, METADATA, SCENE_ATTACHMENT};
 use crate::snapshot::{Setting, Snapshot};
 pub(crate) use records::Records;
 
-pub use crate::record::schema::Diagnostics as DiagnosticsRecord;
 pub use error::LogError;
 pub use frames::Frames;
 pub use summary::Totals;
@@ -41,7 +40,9 @@ pub struct Frame {
     /// Particles, in ascending order of their ids, and bodies.
     pub snapshot: Snapshot,
     /// Numbers about the frame, where the run recorded them.
-    pub diagnostics: Option<DiagnosticsRecord>,
+    pub diagnostics: Option<Diagnostics>,
+    /// Hash of the state, where the run recorded it.
+    pub state_hash: Option<u64>,
     /// What happened since the frame before.
     pub events: Vec<Event>,
 }

@@ -8,8 +8,9 @@ use unipbd_core::observe::{Diagnostics, Event, Severity};
 use unipbd_core::phase::Phase;
 use unipbd_core::rigid::Body;
 
-use super::convert::{bodies_message, diagnostics_message};
+use super::body_message::bodies_message;
 use super::messages::{self, Level, Log, POINT_STRIDE, PointCloud};
+use super::quantity_message::diagnostics_message;
 use super::schema::ParticleColumns;
 use super::shapes;
 use super::topic::Topic;

@@ -17,13 +17,15 @@
 //! path or number of threads is in the file, so the same run gives the same bytes.
 
 mod background;
-mod convert;
+mod body_message;
 mod destination;
 mod encode;
 mod error;
 mod fields;
 mod header;
 mod messages;
+mod quantity_message;
+mod quantity_schema;
 pub mod schema;
 mod shapes;
 mod topic;
@@ -45,9 +47,10 @@ pub use error::RecordError;
 pub use fields::{Fields, UnknownField};
 pub use header::Header;
 
-pub(crate) use convert::kind_name;
+pub(crate) use body_message::kind_name;
 pub(crate) use header::{METADATA, SCENE_ATTACHMENT};
 pub(crate) use messages::{Level, Log, POINT_STRIDE, PointCloud, unpack_position};
+pub(crate) use quantity_message::read_diagnostics;
 pub(crate) use topic::Topic;
 
 /// Writes a log frame by frame; compression and output happen on a thread of their own.

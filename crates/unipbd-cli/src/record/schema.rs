@@ -1,13 +1,14 @@
 //! The messages of our own in a log, and the protobuf descriptors that let any reader decode them.
 //!
 //! A field is added in one place: its line in `messages!` makes both the Rust struct and the
-//! descriptor. Numbers (`tag`) are never reused.
+//! descriptor. Numbers (`tag`) are never reused. The messages of `/diagnostics` follow from the tables of
+//! [`unipbd_core::observe`].
 
 use prost::Message;
 use prost_types::field_descriptor_proto::{Label, Type};
 use prost_types::{DescriptorProto, FieldDescriptorProto, FileDescriptorProto, FileDescriptorSet};
 
-const PACKAGE: &str = "unipbd";
+use super::quantity_schema::{self, reference};
 
 macro_rules! messages {
     ($(
@@ -30,7 +31,8 @@ macro_rules! messages {
 
         /// Every message, as one self-contained protobuf file.
         fn file() -> FileDescriptorProto {
-            let message_type = vec![$(
+            let mut message_type = quantity_schema::messages();
+            message_type.extend([$(
                 DescriptorProto {
                     name: Some(stringify!($message).to_owned()),
                     field: vec![$(
@@ -44,149 +46,13 @@ macro_rules! messages {
                     )*],
                     ..Default::default()
                 },
-            )*];
-            FileDescriptorProto {
-                name: Some(format!("{PACKAGE}.proto")),
-                package: Some(PACKAGE.to_owned()),
-                message_type,
-                syntax: Some("proto3".to_owned()),
-                ..Default::default()
-            }
+            )*]);
+            quantity_schema::file(message_type)
         }
     };
 }
 
 messages! {
-    /// The state of a run at one frame, in numbers. Counts beyond 32 bits stay at the largest value.
-    message Diagnostics {
-        /// Simulated time [s].
-        #[prost(tag = "1", double)]
-        time: f64,
-        /// Frames done.
-        #[prost(tag = "2", uint32)]
-        frame: u32,
-        /// Substeps done since the start.
-        #[prost(tag = "3", uint32)]
-        step: u32,
-        /// Substeps of the last frame.
-        #[prost(tag = "4", uint32)]
-        substeps: u32,
-        /// Constraint iterations of the last frame.
-        #[prost(tag = "5", uint32)]
-        iterations: u32,
-        /// Neighbour lists built in the last frame.
-        #[prost(tag = "6", uint32)]
-        list_builds: u32,
-        /// Number of liquid particles.
-        #[prost(tag = "7", uint32)]
-        count_liquid: u32,
-        /// Number of gas particles.
-        #[prost(tag = "8", uint32)]
-        count_gas: u32,
-        /// Number of smoke particles.
-        #[prost(tag = "9", uint32)]
-        count_smoke: u32,
-        /// Number of samples of rigid bodies.
-        #[prost(tag = "10", uint32)]
-        count_rigid: u32,
-        /// Number of free solid points.
-        #[prost(tag = "11", uint32)]
-        count_solid: u32,
-        /// Mean of max(C, 0) over fluid particles, as a fraction.
-        #[prost(tag = "12", double)]
-        density_error_mean: f64,
-        /// Largest C over fluid particles, as a fraction.
-        #[prost(tag = "13", double)]
-        density_error_max: f64,
-        /// Smallest C over fluid particles, as a fraction.
-        #[prost(tag = "14", double)]
-        density_error_min: f64,
-        /// Largest pressure over density [m^2/s^2].
-        #[prost(tag = "15", double)]
-        pressure_max: f64,
-        /// Kinetic energy [J].
-        #[prost(tag = "16", double)]
-        kinetic_energy: f64,
-        /// Potential energy [J].
-        #[prost(tag = "17", double)]
-        potential_energy: f64,
-        /// Linear momentum along x [kg m/s].
-        #[prost(tag = "18", double)]
-        momentum_x: f64,
-        /// Linear momentum along y [kg m/s].
-        #[prost(tag = "19", double)]
-        momentum_y: f64,
-        /// Angular momentum about the origin [kg m^2/s].
-        #[prost(tag = "20", double)]
-        angular_momentum: f64,
-        /// Largest particle speed [m/s].
-        #[prost(tag = "21", double)]
-        speed_max: f64,
-        /// Hash of the whole state, 16 hexadecimal digits; empty where it was not computed.
-        #[prost(tag = "22", string)]
-        state_hash: String,
-        /// Per material, in index order.
-        #[prost(tag = "23", message, repeated)]
-        materials: Vec<MaterialDiagnostics>,
-        /// Per constraint group, in solving order.
-        #[prost(tag = "24", message, repeated)]
-        groups: Vec<GroupDiagnostics>,
-        /// Substeps that the last frame asked for.
-        #[prost(tag = "25", uint32)]
-        substeps_wanted: u32,
-        /// What decided the number of substeps.
-        #[prost(tag = "26", string)]
-        substeps_reason: String,
-        /// Deepest overlap of bodies with each other and with walls [m].
-        #[prost(tag = "27", double)]
-        contact_penetration: f64,
-        /// Per wall that has a name.
-        #[prost(tag = "28", message, repeated)]
-        walls: Vec<WallForce>,
-    }
-
-    /// Diagnostics of one material.
-    message MaterialDiagnostics {
-        /// Name of the material.
-        #[prost(tag = "1", string)]
-        name: String,
-        /// Number of particles.
-        #[prost(tag = "2", uint32)]
-        count: u32,
-        /// Mean of max(C, 0), as a fraction.
-        #[prost(tag = "3", double)]
-        density_error_mean: f64,
-        /// Largest C, as a fraction.
-        #[prost(tag = "4", double)]
-        density_error_max: f64,
-        /// Smallest C (dilation), as a fraction.
-        #[prost(tag = "5", double)]
-        density_error_min: f64,
-    }
-
-    /// Diagnostics of one constraint group.
-    message GroupDiagnostics {
-        /// Name of the group.
-        #[prost(tag = "1", string)]
-        name: String,
-        /// Largest constraint violation, in the group's own unit.
-        #[prost(tag = "2", double)]
-        violation: f64,
-    }
-
-    /// The force of the fluids on a wall.
-    message WallForce {
-        /// Name of the wall.
-        #[prost(tag = "1", string)]
-        name: String,
-        /// Mean force over the frame along x [N].
-        #[prost(tag = "2", double)]
-        force_x: f64,
-        /// Mean force over the frame along y [N].
-        #[prost(tag = "3", double)]
-        force_y: f64,
-    }
-
     /// Columns of the particles of `/particles`, in its row order (ascending id). `id`, `material`
     /// and `phase` are empty where they are those of the message before.
     message ParticleColumns {
@@ -342,7 +208,7 @@ fn field(name: &str, kind: &str, repeated: bool, tag: &str, rust_type: &str) -> 
         number: tag.parse().ok(),
         label: Some(if repeated { Label::Repeated } else { Label::Optional } as i32),
         r#type: Some(kind as i32),
-        type_name: (kind == Type::Message).then(|| format!(".{PACKAGE}.{message}")),
+        type_name: (kind == Type::Message).then(|| reference(message)),
         ..Default::default()
     }
 }
@@ -369,15 +235,14 @@ mod tests {
     #[test]
     fn every_message_type_a_field_names_is_in_the_file() {
         let file = file();
-        let known: Vec<String> =
-            file.message_type.iter().map(|message| format!(".{PACKAGE}.{}", message.name())).collect();
+        let known: Vec<String> = file.message_type.iter().map(|message| reference(message.name())).collect();
         let named: Vec<&str> = file
             .message_type
             .iter()
             .flat_map(|message| &message.field)
             .filter_map(|field| field.type_name.as_deref())
             .collect();
-        assert!(named.len() >= 4);
+        assert!(named.len() >= 5);
         assert!(named.iter().all(|name| known.contains(&name.to_string())), "{named:?} of {known:?}");
     }
 }

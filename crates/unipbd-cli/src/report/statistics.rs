@@ -115,7 +115,7 @@ impl Statistics {
 
     /// Takes in the state at the start or after a frame.
     pub fn add_state(&mut self, diagnostics: &Diagnostics) {
-        for (peak, count) in self.peak_by_phase.iter_mut().zip(diagnostics.count_by_phase) {
+        for (peak, count) in self.peak_by_phase.iter_mut().zip(diagnostics.counts) {
             *peak = (*peak).max(count);
         }
         self.peak_particles = self.peak_particles.max(diagnostics.particles());

@@ -10,7 +10,7 @@ use unipbd_core::observe::Diagnostics;
 use unipbd_core::phase::Phase;
 
 use super::format::{bytes, count, duration, percent, plural};
-use super::json::Counts;
+use super::json::ByPhase;
 use super::progress::significant;
 use super::{Outcome, Statistics, Verbosity};
 
@@ -94,8 +94,8 @@ impl Summary {
             state_hash: format!("{:016x}", self.state_hash),
             particles: self.last.particles(),
             particles_peak: statistics.peak_particles,
-            counts: self.last.count_by_phase.into(),
-            counts_peak: statistics.peak_by_phase.into(),
+            counts: ByPhase(self.last.counts),
+            counts_peak: ByPhase(statistics.peak_by_phase),
             emitted: statistics.emitted,
             removed: statistics.removed,
             density_error_mean: statistics.density_error_mean(),
@@ -174,7 +174,7 @@ impl Summary {
     fn particles(&self) -> String {
         let mut parts = Vec::new();
         for (phase, (now, peak)) in
-            Phase::ALL.into_iter().zip(self.last.count_by_phase.into_iter().zip(self.statistics.peak_by_phase))
+            Phase::ALL.into_iter().zip(self.last.counts.into_iter().zip(self.statistics.peak_by_phase))
         {
             match (now, peak) {
                 (_, 0) => {}
@@ -214,8 +214,8 @@ pub struct SummaryLine<'a> {
     state_hash: String,
     particles: u64,
     particles_peak: u64,
-    counts: Counts,
-    counts_peak: Counts,
+    counts: ByPhase,
+    counts_peak: ByPhase,
     emitted: u64,
     removed: u64,
     density_error_mean: f64,

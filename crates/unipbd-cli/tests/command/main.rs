@@ -5,4 +5,5 @@ mod ending;
 mod log;
 mod output;
 mod pictures;
+mod quantities;
 mod support;

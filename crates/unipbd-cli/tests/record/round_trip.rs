@@ -94,13 +94,11 @@ fn what_was_recorded_is_read_back() {
         assert_eq!((totals.frames, totals.start), (u64::from(FRAMES), 0.0));
         let mut frames = log.frames().unwrap();
         for number in 0..FRAMES {
-            let Frame { snapshot: read, diagnostics: numbers, events: happened } = frames.next().unwrap().unwrap();
+            let Frame { snapshot: read, diagnostics: numbers, state_hash, events: happened } =
+                frames.next().unwrap().unwrap();
             assert_eq!(read, as_recorded(&snapshot(PARTICLES, number), fields), "frame {number}");
-            let (numbers, expected) = (numbers.unwrap(), diagnostics(&snapshot(PARTICLES, number), number));
-            assert_eq!(numbers.state_hash, format!("{:016x}", 0xfeed + number));
-            assert_eq!(numbers.kinetic_energy, expected.kinetic_energy);
-            assert_eq!(u64::from(numbers.count_smoke), expected.count_by_phase[2]);
-            assert_eq!((numbers.materials.len(), numbers.groups[0].name.as_str()), (2, "density"));
+            assert_eq!(numbers, Some(diagnostics(&snapshot(PARTICLES, number), number)), "frame {number}");
+            assert_eq!(state_hash, Some(0xfeed + u64::from(number)));
             assert_eq!(happened.len(), events(number).len());
             for (read, written) in happened.iter().zip(events(number)) {
                 assert_eq!((read.severity, &read.message), (written.severity, &written.message));

@@ -6,7 +6,8 @@ use unipbd_cli::record::Header;
 use unipbd_cli::snapshot::{Setting, Snapshot};
 use unipbd_core::Vector64;
 use unipbd_core::observe::{
-    Diagnostics, Event, GroupDiagnostics, Material, MaterialDiagnostics, Severity, WallOutline,
+    Diagnostics, Event, GroupDiagnostics, Material, MaterialDiagnostics, Severity, SubstepReason, Table, Value,
+    WallForce, WallOutline,
 };
 use unipbd_core::phase::Phase;
 use unipbd_core::rigid::{Body, BodyKind, CollisionFilter, Surface};
@@ -113,38 +114,36 @@ fn bodies(time: f64) -> Vec<Body> {
     vec![body, disc]
 }
 
-/// Numbers about a frame.
+/// Numbers about a frame; every quantity has a value of its own.
 pub fn diagnostics(snapshot: &Snapshot, frame: u32) -> Diagnostics {
-    let mut count_by_phase = [0; Phase::ALL.len()];
-    snapshot.phases.iter().for_each(|phase| count_by_phase[*phase as usize] += 1);
-    let material = |name: &str| MaterialDiagnostics {
-        name: name.to_owned(),
-        count: 7,
-        density_error_mean: 0.001,
-        density_error_max: 0.02,
-        density_error_min: -0.1,
-    };
-    Diagnostics {
-        time: snapshot.time,
-        frame: u64::from(frame),
-        step: 8 * u64::from(frame),
-        substeps: 8,
-        iterations: 8,
-        list_builds: 2,
-        count_by_phase,
-        density_error_mean: 0.003,
-        density_error_max: 0.06,
-        density_error_min: -0.5,
-        pressure_max: 39.0,
-        kinetic_energy: 10.0 * noise(1, frame),
-        potential_energy: 20.0,
-        momentum: Vector64::new(0.0, -1.25),
-        angular_momentum: 2.5,
-        speed_max: 1.0 + noise(2, frame),
-        materials: vec![material("water"), material("air")],
-        groups: vec![GroupDiagnostics { name: "density".to_owned(), violation: 0.06 }],
-        ..Diagnostics::default()
+    let mut counts = [0; Phase::ALL.len()];
+    snapshot.phases.iter().for_each(|phase| counts[*phase as usize] += 1);
+    let mut diagnostics: Diagnostics = filled(frame);
+    diagnostics.time = snapshot.time;
+    diagnostics.counts = counts;
+    diagnostics.materials =
+        ["water", "air"].map(|name| MaterialDiagnostics { name: name.to_owned(), ..filled(frame) }).to_vec();
+    diagnostics.groups = vec![GroupDiagnostics { name: "density".to_owned(), ..filled(frame) }];
+    diagnostics.walls = vec![WallForce { name: "tank left".to_owned(), ..filled(frame) }];
+    diagnostics
+}
+
+/// A table whose quantities all differ, from each other and from frame to frame.
+fn filled<T: Table>(frame: u32) -> T {
+    let mut table = T::default();
+    for (quantity, number) in T::QUANTITIES.iter().zip(1..) {
+        let value = match (quantity.read)(&table) {
+            Value::Count(_) => Value::Count(u64::from(1000 * frame + number)),
+            Value::Number(_) => Value::Number(noise(number, frame)),
+            Value::Vector(_) => Value::Vector(Vector64::new(noise(number, frame), -noise(number, frame))),
+            Value::Word(_) => Value::Word(SubstepReason::ALL[frame as usize % SubstepReason::ALL.len()].name()),
+            Value::ByPhase(_) => Value::ByPhase([1, 2, 3, 4, 5].map(|count| count * u64::from(number))),
+        };
+        if let Some(write) = quantity.write {
+            write(&mut table, value);
+        }
     }
+    table
 }
 
 /// A warning shortly before a frame, every fifth frame.

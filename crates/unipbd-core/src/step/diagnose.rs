@@ -4,7 +4,7 @@ use super::Solver;
 use super::world::World;
 use crate::constraints::DensityGroup;
 use crate::math::{Real, Vector64, wide};
-use crate::observe::{Diagnostics, GroupDiagnostics, MaterialDiagnostics, WallForce};
+use crate::observe::{Diagnostics, Entry, GroupDiagnostics, Material, MaterialDiagnostics, WallForce};
 use crate::phase::Phase;
 use crate::rigid::BodyKind;
 
@@ -44,9 +44,9 @@ impl World {
         let fluids = || materials.iter().zip(&self.parts.materials).filter(|(_, material)| material.phase.is_fluid());
         let fluid_count: u64 = fluids().map(|(diagnostics, _)| diagnostics.count).sum();
         let weighted: f64 = fluids().map(|(d, _)| d.density_error_mean * d.count as f64).sum();
-        let mut count_by_phase = [0; Phase::ALL.len()];
+        let mut counts = [0; Phase::ALL.len()];
         for (diagnostics, material) in materials.iter().zip(&self.parts.materials) {
-            count_by_phase[material.phase as usize] += diagnostics.count;
+            counts[material.phase as usize] += diagnostics.count;
         }
         let groups = self.parts.groups.iter().filter_map(|group| {
             Some(GroupDiagnostics { name: group.name().to_owned(), violation: group.violation()? })
@@ -60,7 +60,7 @@ impl World {
             substeps_reason: self.choice.reason,
             iterations: self.iterated,
             list_builds: clock.list_builds,
-            count_by_phase,
+            counts,
             density_error_mean: if fluid_count > 0 { weighted / fluid_count as f64 } else { 0.0 },
             density_error_max: fluids().map(|(d, _)| d.density_error_max).fold(0.0, f64::max),
             density_error_min: fluids().map(|(d, _)| d.density_error_min).fold(0.0, f64::min),
@@ -152,14 +152,8 @@ impl World {
 
     fn material_diagnostics(&self) -> Vec<MaterialDiagnostics> {
         let (particles, errors) = (&self.parts.particles, self.density_errors());
-        let empty = |name: &str| MaterialDiagnostics {
-            name: name.to_owned(),
-            count: 0,
-            density_error_mean: 0.0,
-            density_error_max: 0.0,
-            density_error_min: 0.0,
-        };
-        let mut all: Vec<_> = self.parts.materials.iter().map(|material| empty(&material.name)).collect();
+        let named = |material: &Material| MaterialDiagnostics::named(&material.name);
+        let mut all: Vec<_> = self.parts.materials.iter().map(named).collect();
         for row in 0..particles.len() {
             let error = f64::from(errors[row]);
             let of = &mut all[usize::from(particles.material[row])];

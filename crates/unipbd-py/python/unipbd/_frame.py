@@ -17,7 +17,9 @@ _COPIED = (
 
 @dataclass(frozen=True)
 class Frame:
-    """Numbers about one frame of a run. They stay what they are when the run goes on.
+    """Numbers about one frame of a run. They stay the same when the run goes on.
+
+    The attributes are the numbers asked for most; `diagnostics` has every one.
 
     Attributes:
         time: simulated time at the end of the frame [s].

@@ -19,6 +19,17 @@ if TYPE_CHECKING:
     import pandas
 
 
+def _columns(diagnostics: Mapping[str, Any]) -> dict[str, Any]:
+    """The quantities of a frame with one column for each number, without those of materials, groups and walls."""
+    columns = {f"count_{phase}": count for phase, count in diagnostics["counts"].items()}
+    for name, value in diagnostics.items():
+        if isinstance(value, tuple):
+            columns |= {f"{name}_x": value[0], f"{name}_y": value[1]}
+        elif isinstance(value, (int, float, str)):
+            columns[name] = value
+    return columns
+
+
 @dataclass(frozen=True)
 class LogFrame:
     """One frame of a log. Arrays are read-only, with one row per particle in ascending order of ids.
@@ -148,9 +159,13 @@ class Log:
         return self._frames
 
     def diagnostics(self) -> dict[str, npt.NDArray[Any]]:
-        """The numbers of all frames as arrays by name, shape (frames,): for plots and tables."""
-        rows = [frame.diagnostics for frame in self if frame.diagnostics is not None]
-        names = [name for name, value in rows[0].items() if isinstance(value, (int, float))] if rows else []
+        """The quantities of all frames as arrays by name, shape (frames,): for plots and tables.
+
+        The names are the columns of docs/diagnostics.md: a vector has two, ``momentum_x`` and ``momentum_y``,
+        and ``counts`` has one for each phase, ``count_liquid`` and so on.
+        """
+        rows = [_columns(frame.diagnostics) for frame in self if frame.diagnostics is not None]
+        names = list(rows[0]) if rows else []
         return {name: fixed(np.array([row[name] for row in rows])) for name in names}
 
     def to_pandas(self) -> pandas.DataFrame:

@@ -161,15 +161,10 @@ class Observable:
     # -- numbers -------------------------------------------------------------------------------
 
     def diagnostics(self) -> dict[str, Any]:
-        """The state in numbers: what a `Frame` has, and
+        """The state in numbers: all quantities of docs/diagnostics.md by name.
 
-        - ``step``, ``iterations``, ``list_builds``: substeps since the start; constraint iterations
-          and neighbour lists of the last frame,
-        - ``substeps_wanted``, ``substeps_reason``: what the last frame asked for, and why,
-        - ``contact_penetration``: deepest overlap of bodies with each other and with walls [m],
-        - ``counts``: particles by phase,
-        - ``materials``: ``count`` and ``density_error_mean``, ``_max`` and ``_min`` of each,
-        - ``groups``: largest violation of each constraint group, in its own unit.
+        Vectors are tuples (x, y); ``counts`` has the particles by phase. ``materials``, ``groups`` (constraint
+        groups) and ``walls`` (those with a name) have a dict of quantities for each name.
         """
         return self._native.diagnostics()
 
@@ -179,8 +174,8 @@ class Observable:
 
         The sides of a tank are ``"NAME left"``, ``"NAME right"``, ``"NAME bottom"`` and ``"NAME top"``.
         """
-        forces: dict[str, tuple[float, float]] = self._native.diagnostics()["walls"]
-        return forces
+        walls: dict[str, dict[str, tuple[float, float]]] = self._native.diagnostics()["walls"]
+        return {name: wall["force"] for name, wall in walls.items()}
 
     @property
     def density_error_max(self) -> float:

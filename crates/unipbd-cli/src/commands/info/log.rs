@@ -5,11 +5,15 @@ use std::fs::File;
 use std::path::Path;
 
 use mcap::records::Record;
+use serde::Serialize;
 use serde_json::{Value, json};
+use unipbd_core::observe::Diagnostics;
+use unipbd_core::phase::Phase;
 
 use crate::exit::{Exit, Failure};
-use crate::read::{DiagnosticsRecord, Log, LogError, Records};
+use crate::read::{Log, LogError, Records};
 use crate::report::format::{bytes, count, percent, plural};
+use crate::report::json::Numbers;
 use crate::report::{Console, Form};
 
 /// Messages of a topic.
@@ -27,7 +31,8 @@ struct Content {
     end: f64,
     particles: u64,
     events: u64,
-    last: Option<DiagnosticsRecord>,
+    last: Option<Diagnostics>,
+    last_hash: Option<u64>,
     truncated: bool,
     topics: BTreeMap<String, Traffic>,
 }
@@ -56,7 +61,9 @@ fn read_frames(log: &Log) -> Result<Content, LogError> {
         content.end = frame.snapshot.time;
         content.particles = frame.snapshot.positions.len() as u64;
         content.events += frame.events.len() as u64;
-        content.last = frame.diagnostics.or(content.last.take());
+        if frame.diagnostics.is_some() {
+            (content.last, content.last_hash) = (frame.diagnostics, frame.state_hash);
+        }
     }
     content.truncated = frames.truncated();
     Ok(content)
@@ -128,18 +135,11 @@ fn per_particle(content: &Content, size: u64) -> String {
     if points == 0 { String::new() } else { format!(", {:.1} B per particle and frame", size as f64 / points as f64) }
 }
 
-fn last_lines(last: &DiagnosticsRecord, content: &Content) -> Vec<String> {
-    let counts = [
-        (last.count_liquid, "liquid"),
-        (last.count_gas, "gas"),
-        (last.count_smoke, "smoke"),
-        (last.count_rigid, "rigid"),
-        (last.count_solid, "solid"),
-    ];
-    let held: Vec<String> = counts
+fn last_lines(last: &Diagnostics, content: &Content) -> Vec<String> {
+    let held: Vec<String> = Phase::ALL
         .into_iter()
-        .filter(|(number, _)| *number > 0)
-        .map(|(number, name)| format!("{} {name}", count(u64::from(number))))
+        .filter(|phase| last.count(*phase) > 0)
+        .map(|phase| format!("{} {}", count(last.count(phase)), phase.name()))
         .collect();
     let mut lines = vec![
         format!("  at the end ({:.3} s)", last.time),
@@ -149,12 +149,12 @@ fn last_lines(last: &DiagnosticsRecord, content: &Content) -> Vec<String> {
             percent(last.density_error_mean),
             percent(last.density_error_max)
         ),
-        format!("    substeps       {} a frame, {} in all", last.substeps, count(u64::from(last.step))),
+        format!("    substeps       {} a frame, {} in all", last.substeps, count(last.step)),
         format!("    energy         {:.4e} J kinetic, {:.4e} J potential", last.kinetic_energy, last.potential_energy),
         format!("    largest speed  {:.3} m/s", last.speed_max),
     ];
-    if !last.state_hash.is_empty() {
-        lines.push(format!("    state hash     {}", last.state_hash));
+    if let Some(hash) = content.last_hash {
+        lines.push(format!("    state hash     {hash:016x}"));
     }
     lines
 }
@@ -193,30 +193,18 @@ fn object(log: &Log, content: &Content, size: u64) -> Value {
         "events": content.events,
         "materials": materials.collect::<Vec<_>>(),
         "topics": topics.collect::<serde_json::Map<_, _>>(),
-        "last": content.last.as_ref().map(last_object),
+        "last": content.last.as_ref().map(|last| last_line(last, content)),
     })
 }
 
-fn last_object(last: &DiagnosticsRecord) -> Value {
-    json!({
-        "time": last.time,
-        "frame": last.frame,
-        "step": last.step,
-        "substeps": last.substeps,
-        "counts": {
-            "liquid": last.count_liquid,
-            "gas": last.count_gas,
-            "smoke": last.count_smoke,
-            "rigid": last.count_rigid,
-            "solid": last.count_solid,
-        },
-        "density_error_mean": last.density_error_mean,
-        "density_error_max": last.density_error_max,
-        "density_error_min": last.density_error_min,
-        "pressure_max": last.pressure_max,
-        "kinetic_energy": last.kinetic_energy,
-        "potential_energy": last.potential_energy,
-        "speed_max": last.speed_max,
-        "state_hash": last.state_hash,
-    })
+/// The numbers of a frame as `run --json` has them, and the hash of its state.
+#[derive(Serialize)]
+struct LastLine<'a> {
+    #[serde(flatten)]
+    numbers: Numbers<'a>,
+    state_hash: Option<String>,
+}
+
+fn last_line<'a>(last: &'a Diagnostics, content: &Content) -> LastLine<'a> {
+    LastLine { numbers: Numbers(last), state_hash: content.last_hash.map(|hash| format!("{hash:016x}")) }
 }
