@@ -1,6 +1,6 @@
 //! What a case is, and what comes of it.
 
-use unipbd_core::scene::SolverSettings;
+use unipbd_core::scene::{LegacySettings, SolverSettings};
 
 use crate::runner::{Cost, Failure};
 
@@ -85,9 +85,16 @@ pub struct Trial {
     pub resolution: u32,
     /// How the constraints are solved.
     pub solver: SolverSettings,
+    /// Options that are there for comparison.
+    pub legacy: LegacySettings,
 }
 
 impl Trial {
+    /// This case size with these settings.
+    pub fn new(resolution: u32, solver: SolverSettings) -> Trial {
+        Trial { resolution, solver, legacy: LegacySettings::default() }
+    }
+
     /// A band that is meant for this target compression, or a lower one; above it the figure is reported only.
     pub fn from_target(&self, target: f64, band: Band) -> Band {
         if self.solver.target_compression <= target { band } else { Band::OPEN }
@@ -150,7 +157,15 @@ impl Case {
     /// # Errors
     /// When the scene is refused or the run diverges.
     pub fn run(&self, resolution: u32, solver: &SolverSettings) -> Result<Outcome, Failure> {
-        let (figures, cost) = (self.run)(&Trial { resolution, solver: solver.clone() })?;
-        Ok(Outcome { case: self.name, resolution, figures, cost })
+        self.run_trial(&Trial::new(resolution, solver.clone()))
+    }
+
+    /// Runs the case with options for comparison too.
+    ///
+    /// # Errors
+    /// When the scene is refused or the run diverges.
+    pub fn run_trial(&self, trial: &Trial) -> Result<Outcome, Failure> {
+        let (figures, cost) = (self.run)(trial)?;
+        Ok(Outcome { case: self.name, resolution: trial.resolution, figures, cost })
     }
 }

@@ -1,19 +1,29 @@
-//! The museum piece: what the `seed` preset is made of, and that it shows its faults.
+//! The program that this project grew from: its options show its faults.
 
 use unipbd_core::Solver;
-use unipbd_core::scene::{Preset, SolverSettings, Substeps};
 
 use crate::support::{run_until, solver};
 
-/// Two liquids side by side, with these solver keys.
-fn two_liquids(keys: &str) -> Solver {
+/// The solver of the program, without the averaging.
+const SEED: &str = r#"
+    [solver]
+    substeps = 1
+    iterations = 3
+    kernel_radius = 3.2258
+    gradients = "predicted"
+    settle_substeps = 0
+    [legacy]
+    kernel = "poly6_spiky_3d"
+"#;
+
+/// Two liquids side by side.
+fn two_liquids() -> Solver {
     solver(&format!(
         r#"
         spacing = 0.62
         gravity = [0.0, -9.8]
-        [solver]
-        kernel_radius = 3.2258
-        {keys}
+        {SEED}
+        mass_density = {{}}
         [[liquid]]
         name = "light"
         density = 1.0
@@ -40,46 +50,6 @@ fn two_liquids(keys: &str) -> Solver {
     ))
 }
 
-/// Every key of the preset, one by one.
-const SPELLED_OUT: &str = r#"
-    substeps = 1
-    iterations = 3
-    settle_substeps = 0
-    kernel = "poly6_spiky_3d"
-    gradients = "predicted"
-    [solver.mass_density]
-    liquid_mixing = 0.01
-    gas_mixing = 0.05
-    artificial_pressure = 0.1
-    liquid_reference = 0.2
-    gas_reference = 0.25
-    averaging = "neighbors"
-"#;
-
-#[test]
-fn the_seed_preset_is_a_table_of_options_and_nothing_else() {
-    let (mut preset, mut options) = (two_liquids("preset = \"seed\""), two_liquids(SPELLED_OUT));
-    assert_eq!(preset.stages(), options.stages());
-    run_until(&mut preset, 0.5);
-    run_until(&mut options, 0.5);
-    assert_eq!(preset.positions(), options.positions());
-}
-
-#[test]
-fn keys_beside_a_preset_win_over_it() {
-    let settings = |keys: &str| {
-        let text = format!(
-            "[solver]\n{keys}\n[[liquid]]\nname = \"water\"\n[[block]]\nmaterial = \"water\"\nmin = [0.0, 0.0]\nmax = [1.0, 1.0]"
-        );
-        unipbd_cli::scene_file::parse(&text, "test.toml", &[]).unwrap().scene.solver
-    };
-    let changed = settings("iterations = 7\npreset = \"seed\"");
-    assert_eq!((changed.iterations, changed.substeps), (7, Substeps::Fixed(1)));
-    assert_eq!(SolverSettings { iterations: 3, ..changed }, Preset::Seed.settings());
-    assert_eq!(settings("iterations = 1\npreset = \"seed\"").iterations, 1, "a key that is given is given");
-    assert_eq!(settings(""), SolverSettings::default());
-}
-
 /// Density errors of a material, inside alone: at least a kernel radius from every surface.
 fn inside(solver: &Solver, material: u16) -> Vec<f64> {
     let rows = (0..solver.positions().len()).filter(|&row| solver.material_indices()[row] == material);
@@ -92,7 +62,7 @@ fn inside(solver: &Solver, material: u16) -> Vec<f64> {
 
 #[test]
 fn the_seed_starts_far_from_its_rest_densities_and_gains_energy() {
-    let mut seed = two_liquids("preset = \"seed\"");
+    let mut seed = two_liquids();
     let mean = |errors: Vec<f64>| errors.iter().sum::<f64>() / errors.len() as f64;
     let (light, heavy) = (mean(inside(&seed, 0)), mean(inside(&seed, 1)));
     println!("the start is off by {:+.0} % and {:+.0} %", 100.0 * light, 100.0 * heavy);
@@ -113,9 +83,7 @@ fn momentum_is_kept_without_averaging_and_lost_with_it() {
             r#"
             spacing = 0.62
             gravity = [0.0, 0.0]
-            [solver]
-            preset = "seed"
-            kernel_radius = 3.2258
+            {SEED}
             mass_density = {{ averaging = "{averaging}" }}
             [[liquid]]
             name = "light"

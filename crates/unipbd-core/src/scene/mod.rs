@@ -10,10 +10,10 @@ mod description;
 mod estimate;
 mod expect;
 mod layout;
+mod legacy;
 mod materials;
 mod nearest;
 mod points;
-mod preset;
 mod problem;
 mod regions;
 mod ropes;
@@ -29,18 +29,18 @@ pub use bodies::{
     BodyDescription, BodyKind, BodySolver, Copies, Heap, JointDescription, JointRule, MotionDescription, RotationRule,
     Station,
 };
-pub use contacts::{ContactDescription, ContactMethod};
+pub use contacts::ContactDescription;
 pub use description::{Domain, Environment, Scene, View};
 pub use estimate::{BYTES_PER_PARTICLE, Estimate, SECONDS_PER_PARTICLE_AND_SUBSTEP, SECONDS_WITH_COARSE_PROJECTION};
 pub use expect::{BodyExpectation, Expect, MaterialExpectation};
+pub use legacy::{Averaging, LegacyKernel, LegacySettings, MassDensityDescription};
 pub use materials::{Gas, Liquid, LiquidSurface, MaterialRef, Smoke, Solid};
 pub use nearest::nearest;
 pub use points::{PointMotion, Points};
-pub use preset::{Averaging, MassDensityDescription, Preset};
 pub use problem::{KeyPath, KeySegment, Problem, Problems};
 pub use regions::{Heater, Injector, Region, Sink};
 pub use ropes::{Held, Link, Rope, Tethers};
-pub use settings::{GradientPoint, KernelKind, SolverSettings, Substeps};
+pub use settings::{GradientPoint, SolverSettings, Substeps};
 pub use sources::{Block, Disc, Emitter, Profile, Sheath, SmokeSource};
 pub use walls::{HalfPlane, Obstacle, Side, Slip, Tank};
 pub use waves::Wave;
