@@ -24,7 +24,7 @@ LIMIT = 0.01
 PARTS = {
     "bodies and contacts": r"^(bodies|rigid|shapes|constraints/(contact|shape_matching))",
     "gas and smoke": r"^effects/(smoke|drag|wind|confinement|baroclinic|conduction|heating)|^sources",
-    "other groups and effects": r"^constraints/(adhesion|mass_density|distance|rope)|^effects/(cohesion|quadratic|shear)",
+    "other groups and effects": r"^legacy|^constraints/(adhesion|distance|rope)|^effects/(cohesion|quadratic|shear)",
     "sleep": r"^(sleep|step/sleep)",
     "diagnostics": r"^(observe|step/diagnose|expect)",
     "row index, edits, states": r"^(rows|edit|state|bytes)",
