@@ -2,8 +2,8 @@
 
 use cpu_time::ProcessTime;
 use unipbd_core::scene::{
-    Block, GradientPoint, LegacyKernel, LegacySettings, Liquid, LiquidSurface, MassDensityDescription, Scene, SolverSettings,
-    Substeps, Tank,
+    Block, GradientPoint, LegacyKernel, LegacySettings, Liquid, LiquidSurface, MassDensityDescription, Scene,
+    SolverSettings, Substeps, Tank,
 };
 
 use crate::scenes::solver;

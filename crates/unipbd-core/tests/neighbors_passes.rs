@@ -3,7 +3,6 @@
 
 use unipbd_core::kernel::{Shape, WendlandC2};
 use unipbd_core::legacy::Formula;
-use unipbd_core::scene::LegacyKernel;
 use unipbd_core::neighbors::{Grid, NeighborList};
 use unipbd_core::parallel::Parallelism;
 use unipbd_core::passes::{
@@ -11,6 +10,7 @@ use unipbd_core::passes::{
     repulsion, vorticity, xsph, xsph_mixed,
 };
 use unipbd_core::periodic::{Periodic, PeriodicAxis};
+use unipbd_core::scene::LegacyKernel;
 use unipbd_core::simd::Level;
 use unipbd_core::{Real, Vector};
 

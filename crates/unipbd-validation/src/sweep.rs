@@ -119,7 +119,11 @@ pub const VARIANTS: &[Variant] = &[
         (t.legacy.kernel, t.solver.kernel_radius) = (LegacyKernel::CubicSpline, 3.0);
     }),
     Variant { name: "h = 3 dx, 2 iterations", change: |t| t.solver.kernel_radius = 3.0, scan: Scan::Substeps(2) },
-    Variant { name: "h = 3 dx, 1 substep, K iterations", change: |t| t.solver.kernel_radius = 3.0, scan: Scan::Iterations },
+    Variant {
+        name: "h = 3 dx, 1 substep, K iterations",
+        change: |t| t.solver.kernel_radius = 3.0,
+        scan: Scan::Iterations,
+    },
     Variant {
         name: "Macklin & Müller 2013",
         change: |t| {

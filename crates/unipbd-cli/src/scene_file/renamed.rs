@@ -17,7 +17,11 @@ const FOR_COMPARISON: &str = "the table holds what is there for comparison alone
 
 const RENAMED: &[Renamed] = &[
     Renamed { old: "liquid.viscosity", new: &["liquid.xsph", "liquid.kinematic_viscosity"], reason: TWO_VISCOSITIES },
-    Renamed { old: "solver.preset", new: &["legacy"], reason: "its settings are written out in scenes/seed" },
+    Renamed {
+        old: "solver.preset",
+        new: &["legacy"],
+        reason: "the settings of the preset are written out in scenes/seed",
+    },
     Renamed { old: "solver.kernel", new: &["legacy.kernel"], reason: FOR_COMPARISON },
     Renamed { old: "solver.constraint_mixing", new: &["legacy.constraint_mixing"], reason: FOR_COMPARISON },
     Renamed { old: "solver.artificial_pressure", new: &["legacy.artificial_pressure"], reason: FOR_COMPARISON },

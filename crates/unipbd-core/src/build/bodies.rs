@@ -9,7 +9,8 @@ use crate::rigid::{
     Bodies, BodySpec, CollisionFilter, Elasticity, MassSpec, Motion, Pose, Repeat, Rotation, Surface, Twist, Waypoint,
 };
 use crate::scene::{
-    BodyDescription, BodySolver, ContactDescription, JointDescription, JointRule, MotionDescription, Rope, RotationRule, Scene, Side,
+    BodyDescription, BodySolver, ContactDescription, JointDescription, JointRule, MotionDescription, Rope,
+    RotationRule, Scene, Side,
 };
 use crate::shapes::Shape;
 

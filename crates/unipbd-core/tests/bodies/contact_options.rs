@@ -2,12 +2,12 @@
 //! and mass scaling.
 
 use super::world::{FRAME, GRAVITY, World, at, body, floor, never_asleep, unit_box};
-use unipbd_core::legacy;
-use unipbd_core::scene::LegacySettings;
 use unipbd_core::Vector64;
+use unipbd_core::legacy;
 use unipbd_core::rigid::Wall;
 use unipbd_core::rigid::contact::ContactSettings;
 use unipbd_core::rigid::{BodySpec, Pose, Surface, Twist};
+use unipbd_core::scene::LegacySettings;
 use unipbd_core::shapes::Shape;
 
 /// A world whose contacts are solved as the options for comparison say.
