@@ -1,7 +1,10 @@
 //! Time of a frame against the number of particles, next to what the original program took.
 
 use cpu_time::ProcessTime;
-use unipbd_core::scene::{Block, Liquid, LiquidSurface, Preset, Scene, Tank};
+use unipbd_core::scene::{
+    Block, GradientPoint, LegacyKernel, LegacySettings, Liquid, LiquidSurface, MassDensityDescription, Scene,
+    SolverSettings, Substeps, Tank,
+};
 
 use crate::scenes::solver;
 
@@ -26,25 +29,45 @@ pub const ORIGINAL: [Point; 4] = [
 /// Sizes that are measured if none are given.
 pub const SIZES: [usize; 8] = [400, 1_600, 6_400, 12_800, 51_200, 204_800, 500_000, 1_000_000];
 
-/// Two liquids side by side in a box, as high as wide: the original's scene at any size, its spacing
-/// kept. Its solver or ours.
-pub fn two_liquids(particles: usize, preset: Preset) -> Scene {
+/// Whose solver runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Method {
+    /// The default settings.
+    Default,
+    /// The choices of the original program, as in `scenes/seed`.
+    Original,
+}
+
+/// Two liquids side by side in a box, as high as wide: the original's scene at any size, its spacing kept.
+pub fn two_liquids(particles: usize, method: Method) -> Scene {
     let across = (particles as f64).sqrt();
     let half = (across / 2.0).round().max(1.0);
     let rows = (particles as f64 / (2.0 * half)).round().max(1.0);
-    let mut scene = Scene { spacing: 0.62, gravity: [0.0, -9.8], solver: preset.settings(), ..Scene::default() };
+    let mut scene = Scene { spacing: 0.62, gravity: [0.0, -9.8], ..Scene::default() };
     let (half, top) = (half * scene.spacing, rows * scene.spacing);
-    let seed = preset == Preset::Seed;
+    let original = method == Method::Original;
     let liquid = |name: &str, density: f64| Liquid {
-        particle_mass: seed.then_some(1.0),
-        surface: if seed { LiquidSurface::None } else { LiquidSurface::Free },
+        particle_mass: original.then_some(1.0),
+        surface: if original { LiquidSurface::None } else { LiquidSurface::Free },
         ..Liquid::new(name, density)
     };
     scene.liquid = vec![liquid("light", 1.0), liquid("heavy", 2.0)];
     scene.block = vec![Block::new("light", [-half, 0.0], [0.0, top]), Block::new("heavy", [0.0, 0.0], [half, top])];
     scene.tank = vec![Tank::new([-half, 0.0], [half, 2.0 * top])];
-    if seed {
-        scene.solver.kernel_radius = 2.0 / scene.spacing;
+    if original {
+        scene.solver = SolverSettings {
+            substeps: Substeps::Fixed(1),
+            iterations: 3,
+            kernel_radius: 2.0 / scene.spacing,
+            gradients: Some(GradientPoint::Predicted),
+            settle_substeps: Some(0),
+            ..SolverSettings::default()
+        };
+        scene.legacy = LegacySettings {
+            kernel: LegacyKernel::Poly6Spiky3d,
+            mass_density: Some(MassDensityDescription::default()),
+            ..LegacySettings::default()
+        };
     }
     scene
 }
@@ -91,8 +114,8 @@ mod tests {
     #[test]
     fn both_solvers_get_the_particles_asked_for() {
         for particles in [400, 1_600, 12_800] {
-            for preset in [Preset::Standard, Preset::Seed] {
-                let start = two_liquids(particles, preset).estimate().particles_at_start;
+            for method in [Method::Default, Method::Original] {
+                let start = two_liquids(particles, method).estimate().particles_at_start;
                 assert!((start as f64 / particles as f64 - 1.0).abs() < 0.03, "{start} for {particles}");
             }
         }

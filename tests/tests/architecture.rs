@@ -19,7 +19,7 @@ const LAYERS: [&[&str]; 17] = [
     &["passes"],
     &["rigid"],
     &["constraints"],
-    &["coupling", "effects", "pressure_grid", "sleep", "sources"],
+    &["coupling", "effects", "legacy", "pressure_grid", "sleep", "sources"],
     &["step"],
     &["edit"],
     &["build"],
@@ -28,7 +28,7 @@ const LAYERS: [&[&str]; 17] = [
 ];
 
 /// Kinds of constraint: a file or folder each, and none names another.
-const CONSTRAINTS: [&str; 6] = ["adhesion", "batch", "density", "distance", "mass_density", "shape_matching"];
+const CONSTRAINTS: [&str; 5] = ["adhesion", "batch", "density", "distance", "shape_matching"];
 
 fn core() -> PathBuf {
     repository().join("crates/unipbd-core/src")
@@ -140,6 +140,14 @@ fn only_the_builder_makes_density_groups_and_effects() {
         for maker in makers.into_iter().filter(|maker| code.contains(maker)) {
             assert_eq!(module(&path), "build", "{} calls {maker}", path.display());
         }
+    }
+}
+
+#[test]
+fn only_the_builder_knows_the_legacy_options() {
+    for path in files(&core()) {
+        let known = imports(&code(&path)).iter().any(|import| import == "legacy");
+        assert!(!known || ["legacy", "build"].contains(&module(&path).as_str()), "{} names legacy", path.display());
     }
 }
 

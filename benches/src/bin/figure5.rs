@@ -7,8 +7,7 @@ use std::error::Error;
 use std::path::Path;
 
 use plotters::prelude::*;
-use unipbd_benches::growth::{self, ORIGINAL, Point, SIZES};
-use unipbd_core::scene::Preset;
+use unipbd_benches::growth::{self, Method, ORIGINAL, Point, SIZES};
 use unipbd_validation::stamp::{machine, stamp};
 
 /// Exponents are fitted from this size on: below, the cost of starting threads and stages counts.
@@ -31,8 +30,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             what: "one step, three iterations, all pairs searched",
             points: ORIGINAL.into(),
         },
-        measured("seed preset", "the same method here: one step, three iterations", &sizes, Preset::Seed),
-        measured("default", "substeps for at most 1 % compression", &sizes, Preset::Standard),
+        measured("seed settings", "the same method here: one step, three iterations", &sizes, Method::Original),
+        measured("default", "substeps for at most 1 % compression", &sizes, Method::Default),
     ];
     let docs = Path::new(env!("CARGO_MANIFEST_DIR")).join("../docs");
     draw(&docs.join("images/figure5.svg"), &curves)?;
@@ -40,10 +39,10 @@ fn main() -> Result<(), Box<dyn Error>> {
     Ok(())
 }
 
-fn measured(name: &'static str, what: &'static str, sizes: &[usize], preset: Preset) -> Curve {
+fn measured(name: &'static str, what: &'static str, sizes: &[usize], method: Method) -> Curve {
     let point = |&size: &usize| {
         let frames = (WORK / size.max(1)).clamp(2, 100) as u32;
-        let point = growth::measure(&growth::two_liquids(size, preset), frames);
+        let point = growth::measure(&growth::two_liquids(size, method), frames);
         eprintln!("{name}: {} particles, {:.3} ms a frame", point.particles, point.milliseconds);
         point
     };
@@ -99,7 +98,7 @@ fn page(curves: &[Curve]) -> String {
         let exponent = growth::exponent(&curve.points, FITTED_FROM);
         text += &format!("- **{}**: {}; grows as N^{exponent:.2} from {FITTED_FROM} on.\n", curve.name, curve.what);
     }
-    text += "\n| particles | original program [ms] | seed preset [ms] | default [ms] |\n|---|---|---|---|\n";
+    text += "\n| particles | original program [ms] | seed settings [ms] | default [ms] |\n|---|---|---|---|\n";
     let mut sizes: Vec<usize> = curves.iter().flat_map(|curve| curve.points.iter().map(|p| p.particles)).collect();
     sizes.sort_unstable();
     sizes.dedup();

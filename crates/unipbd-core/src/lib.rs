@@ -20,6 +20,7 @@ mod coupling;
 pub mod edit;
 pub mod effects;
 pub mod kernel;
+pub mod legacy;
 pub mod math;
 pub mod neighbors;
 pub mod observe;

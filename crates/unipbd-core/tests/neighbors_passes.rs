@@ -1,7 +1,8 @@
 //! The passes over pairs: every instruction set gives the bits of the scalar form, and the scalar
 //! form is the formula.
 
-use unipbd_core::kernel::{CubicSpline, Mixed, Poly6, Shape, Spiky, WendlandC2};
+use unipbd_core::kernel::{Shape, WendlandC2};
+use unipbd_core::legacy::Formula;
 use unipbd_core::neighbors::{Grid, NeighborList};
 use unipbd_core::parallel::Parallelism;
 use unipbd_core::passes::{
@@ -9,6 +10,7 @@ use unipbd_core::passes::{
     repulsion, vorticity, xsph, xsph_mixed,
 };
 use unipbd_core::periodic::{Periodic, PeriodicAxis};
+use unipbd_core::scene::LegacyKernel;
 use unipbd_core::simd::Level;
 use unipbd_core::{Real, Vector};
 
@@ -154,9 +156,8 @@ fn every_kernel_gives_the_bits_of_the_scalar_form() {
     }
     let radius = f64::from(RADIUS);
     let set = Set::random(300, periods()[1]);
-    check(&set, Poly6::new(radius));
-    check(&set, CubicSpline::new(radius));
-    check(&set, Mixed { value: Poly6::new(radius), slope: Spiky::new(radius) });
+    check(&set, Formula::new(LegacyKernel::CubicSpline, radius));
+    check(&set, Formula::new(LegacyKernel::Poly6Spiky, radius));
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! What a case is, and what comes of it.
 
-use unipbd_core::scene::{Scene, SolverSettings};
+use unipbd_core::scene::{LegacySettings, Scene, SolverSettings};
 
 use crate::runner::{Cost, Failure, Runner};
 
@@ -85,11 +85,18 @@ pub struct Trial {
     pub resolution: u32,
     /// How the constraints are solved.
     pub solver: SolverSettings,
+    /// Options that are there for comparison.
+    pub legacy: LegacySettings,
     /// Most frames of a stretch: no limit for figures, one to see that a case can be built.
     pub frames: u32,
 }
 
 impl Trial {
+    /// This case size with these settings.
+    pub fn new(resolution: u32, solver: SolverSettings) -> Trial {
+        Trial { resolution, solver, legacy: LegacySettings::default(), frames: u32::MAX }
+    }
+
     /// Builds a scene of the case on one thread.
     ///
     /// # Errors
@@ -162,7 +169,7 @@ impl Case {
     /// # Errors
     /// When the scene is refused or the run diverges.
     pub fn run(&self, resolution: u32, solver: &SolverSettings) -> Result<Outcome, Failure> {
-        self.trial(Trial { resolution, solver: solver.clone(), frames: u32::MAX })
+        self.run_trial(&Trial::new(resolution, solver.clone()))
     }
 
     /// Builds the scenes of the case and runs a frame of every stretch: its figures mean nothing.
@@ -172,11 +179,15 @@ impl Case {
     pub fn build(&self, resolution: u32, solver: &SolverSettings) -> Result<Outcome, Failure> {
         // How far the start settles makes no difference to whether it can be built, but most of the time.
         let solver = SolverSettings { settle_substeps: Some(0), ..solver.clone() };
-        self.trial(Trial { resolution, solver, frames: 1 })
+        self.run_trial(&Trial { frames: 1, ..Trial::new(resolution, solver) })
     }
 
-    fn trial(&self, trial: Trial) -> Result<Outcome, Failure> {
-        let (figures, cost) = (self.run)(&trial)?;
+    /// Runs the case with options for comparison too.
+    ///
+    /// # Errors
+    /// When the scene is refused or the run diverges.
+    pub fn run_trial(&self, trial: &Trial) -> Result<Outcome, Failure> {
+        let (figures, cost) = (self.run)(trial)?;
         Ok(Outcome { case: self.name, resolution: trial.resolution, figures, cost })
     }
 }

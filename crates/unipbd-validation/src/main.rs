@@ -3,7 +3,8 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use unipbd_core::scene::{GradientPoint, KernelKind, SolverSettings, Substeps};
+use unipbd_core::scene::{GradientPoint, LegacyKernel, SolverSettings, Substeps};
+use unipbd_validation::case::Trial;
 use unipbd_validation::document::{with_introduction, with_section};
 use unipbd_validation::plan::{Line, lines};
 use unipbd_validation::report::{Entry, with_notes};
@@ -89,22 +90,23 @@ fn run_one(name: &str, rest: &[String]) -> Result<bool, Box<dyn std::error::Erro
         let names: Vec<&str> = cases::ALL.iter().map(|case| case.name).collect();
         format!("there is no case \"{name}\"; the cases are {}", names.join(", "))
     })?;
-    let (mut resolution, mut solver) = (case.quick, SolverSettings::default());
+    let mut trial = Trial::new(case.quick, SolverSettings::default());
     for argument in rest {
         match argument.split_once('=') {
-            None => resolution = argument.parse()?,
-            Some((key, value)) => set(&mut solver, key, value)?,
+            None => trial.resolution = argument.parse()?,
+            Some((key, value)) => set(&mut trial, key, value)?,
         }
     }
-    let target = solver.target_compression;
-    let line = Line { case, resolution, target, coarse: solver.coarse_projection > 0 };
-    let entry = Entry { line, result: case.run(resolution, &solver) };
+    let (resolution, target) = (trial.resolution, trial.solver.target_compression);
+    let line = Line { case, resolution, target, coarse: trial.solver.coarse_projection > 0 };
+    let entry = Entry { line, result: case.run_trial(&trial) };
     show(&entry);
     Ok(entry.verdict() == "holds")
 }
 
-/// Sets a key of the solver.
-fn set(solver: &mut SolverSettings, key: &str, value: &str) -> Result<(), Box<dyn std::error::Error>> {
+/// Sets a key of the solver, or an option for comparison.
+fn set(trial: &mut Trial, key: &str, value: &str) -> Result<(), Box<dyn std::error::Error>> {
+    let (solver, legacy) = (&mut trial.solver, &mut trial.legacy);
     match key {
         "target" => solver.target_compression = value.parse()?,
         "substeps" => solver.substeps = Substeps::Fixed(value.parse()?),
@@ -114,22 +116,21 @@ fn set(solver: &mut SolverSettings, key: &str, value: &str) -> Result<(), Box<dy
         "kernel_radius" => solver.kernel_radius = value.parse()?,
         "shifting" => solver.shifting = Some(value.parse()?),
         "relaxation" => solver.relaxation = Some(value.parse()?),
-        "constraint_mixing" => solver.constraint_mixing = value.parse()?,
-        "artificial_pressure" => solver.artificial_pressure = value.parse()?,
+        "constraint_mixing" => legacy.constraint_mixing = value.parse()?,
+        "artificial_pressure" => legacy.artificial_pressure = value.parse()?,
         "gradients" => {
             solver.gradients = Some(match value {
                 "start" => GradientPoint::Start,
                 "early" => GradientPoint::Early,
-                "middle" => GradientPoint::Middle,
                 "predicted" => GradientPoint::Predicted,
-                _ => return Err("gradients are start, early, middle or predicted".into()),
+                _ => return Err("gradients are start, early or predicted".into()),
             });
         }
         "kernel" => {
-            solver.kernel = match value {
-                "wendland_c2" => KernelKind::WendlandC2,
-                "cubic_spline" => KernelKind::CubicSpline,
-                "poly6_spiky" => KernelKind::Poly6Spiky,
+            legacy.kernel = match value {
+                "wendland_c2" => LegacyKernel::WendlandC2,
+                "cubic_spline" => LegacyKernel::CubicSpline,
+                "poly6_spiky" => LegacyKernel::Poly6Spiky,
                 _ => return Err("kernels are wendland_c2, cubic_spline, poly6_spiky".into()),
             };
         }

@@ -1,6 +1,8 @@
 //! Scenes that several cases share. dx = 0.1 m and g = 9.81 m/s^2 unless a case says otherwise.
 
-use unipbd_core::scene::{Block, BodyDescription, Emitter, HalfPlane, Liquid, Profile, Scene, SolverSettings, Tank};
+use unipbd_core::scene::{Block, BodyDescription, Emitter, HalfPlane, Liquid, Profile, Scene, Tank};
+
+use crate::case::Trial;
 
 /// Spacing of the free-surface cases [m].
 pub const SPACING: f64 = 0.1;
@@ -8,11 +10,12 @@ pub const SPACING: f64 = 0.1;
 pub const GRAVITY: f64 = 9.81;
 
 /// Water of `size` spacings in the lower left corner of a tank `width` spacings wide.
-pub fn pool(size: (f64, f64), width: f64, solver: &SolverSettings) -> Scene {
+pub fn pool(size: (f64, f64), width: f64, trial: &Trial) -> Scene {
     let (right, top) = (SPACING * size.0, SPACING * size.1);
     Scene {
         spacing: SPACING,
-        solver: solver.clone(),
+        solver: trial.solver.clone(),
+        legacy: trial.legacy.clone(),
         liquid: vec![Liquid::new("water", 1000.0)],
         block: vec![Block::new("water", [0.0, 0.0], [right, top])],
         tank: vec![Tank::new([0.0, 0.0], [SPACING * width, 4.0 * top])],

@@ -2,9 +2,9 @@
 
 use std::fmt::Write;
 
-use unipbd_core::scene::{GradientPoint, KernelKind, Liquid, Scene, SolverSettings, Substeps};
+use unipbd_core::scene::{GradientPoint, LegacyKernel, Liquid, Scene, SolverSettings, Substeps};
 
-use crate::case::{Case, Outcome};
+use crate::case::{Case, Outcome, Trial};
 use crate::cases::{self, DENSITY_ERROR, LEVEL, WORST};
 use crate::chart::{Curve, Point, log_log, mark_front};
 use crate::plan;
@@ -89,7 +89,7 @@ pub const SCATTER: f64 = 0.1;
 pub struct Variant {
     /// Name of the curve.
     pub name: &'static str,
-    change: fn(&mut SolverSettings),
+    change: fn(&mut Trial),
     scan: Scan,
 }
 
@@ -111,64 +111,71 @@ pub const VARIANTS: &[Variant] = &[
     Variant::over_substeps("h = 2 dx, taken early", |s| at(s, 2.0, GradientPoint::Early)),
     Variant::over_substeps("h = 2.5 dx, taken early", |s| at(s, 2.5, GradientPoint::Early)),
     Variant::over_substeps("h = 4 dx, taken early", |s| at(s, 4.0, GradientPoint::Early)),
-    Variant::over_substeps("h = 3 dx, taken half way", |s| at(s, 3.0, GradientPoint::Middle)),
     Variant::over_substeps("h = 3 dx, gradients at the prediction", |s| at(s, 3.0, GradientPoint::Predicted)),
     Variant::over_substeps("h = 3 dx, gradients at the start", |s| at(s, 3.0, GradientPoint::Start)),
     Variant::over_substeps("h = 2 dx, gradients at the prediction", |s| at(s, 2.0, GradientPoint::Predicted)),
     Variant::over_substeps("h = 2 dx, gradients at the start", |s| at(s, 2.0, GradientPoint::Start)),
-    Variant::over_substeps("cubic spline, h = 3 dx", |s| {
-        (s.kernel, s.kernel_radius) = (KernelKind::CubicSpline, 3.0);
+    Variant::over_substeps("cubic spline, h = 3 dx", |t| {
+        (t.legacy.kernel, t.solver.kernel_radius) = (LegacyKernel::CubicSpline, 3.0);
     }),
-    Variant { name: "h = 3 dx, 2 iterations", change: |s| s.kernel_radius = 3.0, scan: Scan::Substeps(2) },
-    Variant { name: "h = 3 dx, 1 substep, K iterations", change: |s| s.kernel_radius = 3.0, scan: Scan::Iterations },
+    Variant { name: "h = 3 dx, 2 iterations", change: |t| t.solver.kernel_radius = 3.0, scan: Scan::Substeps(2) },
+    Variant {
+        name: "h = 3 dx, 1 substep, K iterations",
+        change: |t| t.solver.kernel_radius = 3.0,
+        scan: Scan::Iterations,
+    },
     Variant {
         name: "Macklin & Müller 2013",
-        change: |s| {
-            (s.kernel, s.kernel_radius) = (KernelKind::Poly6Spiky, 3.0);
-            s.relaxation = Some(1.0);
-            s.gradients = Some(GradientPoint::Predicted);
-            (s.constraint_mixing, s.artificial_pressure) = (1.0, 0.1);
+        change: |t| {
+            at(t, 3.0, GradientPoint::Predicted);
+            t.solver.relaxation = Some(1.0);
+            t.legacy.kernel = LegacyKernel::Poly6Spiky;
+            (t.legacy.constraint_mixing, t.legacy.artificial_pressure) = (1.0, 0.1);
         },
         scan: Scan::Iterations,
     },
-    Variant { name: COARSE, change: |s| s.coarse_projection = 3, scan: Scan::Targets },
+    Variant { name: COARSE, change: |t| t.solver.coarse_projection = 3, scan: Scan::Targets },
 ];
 
 /// Drawn, but does not count: it carries one liquid in static walls alone, and is no choice for all of these cases.
 const COARSE: &str = "coarse projection, n by target";
 
 /// Sets kernel radius and where the constraint is taken.
-fn at(settings: &mut SolverSettings, radius: f64, gradients: GradientPoint) {
-    (settings.kernel_radius, settings.gradients) = (radius, Some(gradients));
+fn at(trial: &mut Trial, radius: f64, gradients: GradientPoint) {
+    (trial.solver.kernel_radius, trial.solver.gradients) = (radius, Some(gradients));
 }
 
 impl Variant {
     /// A curve over substeps of one iteration each.
-    const fn over_substeps(name: &'static str, change: fn(&mut SolverSettings)) -> Variant {
+    const fn over_substeps(name: &'static str, change: fn(&mut Trial)) -> Variant {
         Variant { name, change, scan: Scan::Substeps(1) }
     }
 
-    /// The settings along the curve.
-    fn settings(&self) -> Vec<SolverSettings> {
+    /// The trials along the curve.
+    fn trials(&self, resolution: u32) -> Vec<Trial> {
         let fixed = |substeps: u32, iterations: u32| SolverSettings {
             substeps: Substeps::Fixed(substeps),
             iterations,
             ..SolverSettings::default()
         };
-        let mut all: Vec<SolverSettings> = match self.scan {
+        let all: Vec<SolverSettings> = match self.scan {
             Scan::Substeps(iterations) => [4, 8, 16, 32].map(|n| fixed((n / iterations).max(1), iterations)).to_vec(),
             Scan::Iterations => [4, 8, 16, 32].map(|iterations| fixed(1, iterations)).to_vec(),
             Scan::Targets => [0.04, 0.02, 0.01, 0.005, 0.0025].map(plan::settings).to_vec(),
         };
-        all.iter_mut().for_each(self.change);
-        all
+        let trial = |solver| {
+            let mut trial = Trial::new(resolution, solver);
+            (self.change)(&mut trial);
+            trial
+        };
+        all.into_iter().map(trial).collect()
     }
 }
 
 /// A point of a curve before it is drawn.
 struct Timed {
     variant: &'static Variant,
-    settings: SolverSettings,
+    trial: Trial,
     /// Its worst C in the dam break.
     worst: f64,
     /// What each round gave; nothing once one has failed.
@@ -177,13 +184,14 @@ struct Timed {
 
 impl Timed {
     /// Runs it once more, with a relaxation that differs by this part.
-    fn run(&mut self, case: &'static Case, resolution: u32, part: f64) {
-        let mut settings = self.settings.clone();
+    fn run(&mut self, case: &'static Case, part: f64) {
+        let mut trial = self.trial.clone();
+        let solver = &mut trial.solver;
         // What all four cases are made of.
-        let water = Scene { solver: settings.clone(), liquid: vec![Liquid::new("water", 1000.0)], ..Scene::default() };
+        let water = Scene { solver: solver.clone(), liquid: vec![Liquid::new("water", 1000.0)], ..Scene::default() };
         let gradients = water.gradients();
-        settings.relaxation = Some(settings.relaxation_of_liquids(gradients) * (1.0 + part));
-        self.outcomes.extend(case.run(resolution, &settings).ok());
+        solver.relaxation = Some(solver.relaxation_of_liquids(gradients) * (1.0 + part));
+        self.outcomes.extend(case.run_trial(&trial).ok());
     }
 
     /// Whether a figure of it is judged.
@@ -218,16 +226,16 @@ pub struct Swept {
 pub fn sweep(case: &'static Case, resolution: u32, mut look: impl FnMut(&str)) -> Swept {
     let dam = dam_resolution(case, resolution);
     let timed = |variant: &'static Variant| {
-        variant.settings().into_iter().map(move |settings| {
-            let worst = worst_of_dam_break(dam, &settings);
-            Timed { variant, settings, worst, outcomes: Vec::new() }
+        variant.trials(resolution).into_iter().map(move |trial| {
+            let worst = worst_of_dam_break(dam, &trial);
+            Timed { variant, trial, worst, outcomes: Vec::new() }
         })
     };
     let mut points: Vec<Timed> = VARIANTS.iter().flat_map(timed).collect();
     let rounds = rounds(case);
     for round in 0..rounds {
         let part = APART * (f64::from(round) - 0.5 * f64::from(rounds - 1));
-        points.iter_mut().for_each(|point| point.run(case, resolution, part));
+        points.iter_mut().for_each(|point| point.run(case, part));
         look(&format!("{}: relaxation {:+} % done", case.name, 100.0 * part));
     }
     Swept { case, resolution, points }
@@ -246,8 +254,9 @@ fn dam_resolution(case: &Case, resolution: u32) -> u32 {
     dam.map_or(resolution, |&(_, quick, size)| if full { size } else { quick })
 }
 
-fn worst_of_dam_break(resolution: u32, settings: &SolverSettings) -> f64 {
-    let outcome = cases::find(DAM_BREAK).and_then(|case| case.run(resolution, settings).ok());
+fn worst_of_dam_break(resolution: u32, trial: &Trial) -> f64 {
+    let trial = Trial { resolution, ..trial.clone() };
+    let outcome = cases::find(DAM_BREAK).and_then(|case| case.run_trial(&trial).ok());
     outcome.and_then(|outcome| outcome.figure(WORST)).unwrap_or(f64::NAN)
 }
 
@@ -272,9 +281,9 @@ impl Swept {
         mark_front(&mut curves, SCATTER);
         let mut csv = String::new();
         for (timed, point) in done().zip(curves.iter().flat_map(|curve| &curve.points)) {
-            let substeps = match timed.settings.substeps {
+            let substeps = match timed.trial.solver.substeps {
                 Substeps::Fixed(substeps) => substeps.to_string(),
-                Substeps::Auto => format!("auto {}", timed.settings.target_compression),
+                Substeps::Auto => format!("auto {}", timed.trial.solver.target_compression),
             };
             let _ = writeln!(
                 csv,
@@ -283,7 +292,7 @@ impl Swept {
                 self.resolution,
                 norm.figure,
                 timed.variant.name,
-                timed.settings.iterations,
+                timed.trial.solver.iterations,
                 point.y,
                 point.x,
                 timed.outcomes[0].cost.pair_visits,

@@ -2,7 +2,7 @@
 
 /// A key that the format no longer has.
 pub(super) struct Renamed {
-    /// Path of the old key, without the numbers of tables.
+    /// Path of the old key, without the numbers of tables; with `=` a word that the key no longer takes.
     old: &'static str,
     /// Paths of the keys that took its place.
     new: &'static [&'static str],
@@ -13,8 +13,26 @@ pub(super) struct Renamed {
 const TWO_VISCOSITIES: &str =
     "the first is the smoothing per substep that `viscosity` was, the second a physical viscosity [m^2/s]";
 
+const FOR_COMPARISON: &str = "the table holds what is there for comparison alone";
+
 const RENAMED: &[Renamed] = &[
     Renamed { old: "liquid.viscosity", new: &["liquid.xsph", "liquid.kinematic_viscosity"], reason: TWO_VISCOSITIES },
+    Renamed {
+        old: "solver.preset",
+        new: &["legacy"],
+        reason: "the settings of the preset are written out in scenes/seed",
+    },
+    Renamed { old: "solver.kernel", new: &["legacy.kernel"], reason: FOR_COMPARISON },
+    Renamed { old: "solver.constraint_mixing", new: &["legacy.constraint_mixing"], reason: FOR_COMPARISON },
+    Renamed { old: "solver.artificial_pressure", new: &["legacy.artificial_pressure"], reason: FOR_COMPARISON },
+    Renamed { old: "solver.mass_density", new: &["legacy.mass_density"], reason: FOR_COMPARISON },
+    Renamed { old: "solver.gradients=middle", new: &[], reason: "write \"early\": waves lose less with it" },
+    Renamed {
+        old: "contacts.method",
+        new: &["legacy.averaged_contacts"],
+        reason: "it holds the over-relaxation of \"averaged\"; leave both out for \"split\"",
+    },
+    Renamed { old: "contacts.mass_scaling", new: &["legacy.mass_scaling"], reason: FOR_COMPARISON },
     Renamed { old: "gas.viscosity", new: &["gas.xsph", "gas.kinematic_viscosity"], reason: TWO_VISCOSITIES },
 ];
 

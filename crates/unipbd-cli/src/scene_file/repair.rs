@@ -137,9 +137,11 @@ impl<'a> Repair<'a> {
         if words.contains(&word) {
             return;
         }
-        let near = nearest(word, words.iter().copied()).map(|near| format!("did you mean \"{near}\"?"));
+        let renamed = renamed::find(&format!("{}={word}", without_numbers(path)));
+        let near = || nearest(word, words.iter().copied()).map(|near| format!("did you mean \"{near}\"?"));
+        let hint = renamed.map(renamed::Renamed::hint).or_else(near);
         let message = format!("expected {}, found \"{}\"", schema::quoted(words), shortened(word));
-        self.fault(path, &node.span, message, near);
+        self.fault(path, &node.span, message, hint);
         self.replace(node, schema, path);
     }
 

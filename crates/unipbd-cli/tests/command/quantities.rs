@@ -18,7 +18,7 @@ fn scene() -> String {
 /// The diagnostics of the start and of each frame of the scene.
 fn expected(path: &Path) -> Vec<Diagnostics> {
     let scene = scene_file::load(path, &[]).unwrap().scene;
-    let mut simulation = Simulation::new(&scene, Default::default()).unwrap();
+    let mut simulation = Simulation::new(&scene, Default::default());
     let mut all = vec![simulation.solver.diagnostics()];
     while let Some(frame) = simulation.next_frame() {
         frame.unwrap();

@@ -6,7 +6,7 @@ mod files;
 mod forces;
 mod gas;
 mod interface;
+mod legacy;
 mod ropes;
-mod seed;
 mod support;
 mod surface_tension;

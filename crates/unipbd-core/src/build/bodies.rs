@@ -1,6 +1,7 @@
 //! Bodies, joints and walls of a scene as the contact solver takes them.
 
 use super::carve::Solid;
+use crate::legacy;
 use crate::math::Vector64;
 use crate::rigid::Wall;
 use crate::rigid::contact::{ContactSettings, Contacts, DistanceRule, Joint, JointKind, Motor};
@@ -8,7 +9,8 @@ use crate::rigid::{
     Bodies, BodySpec, CollisionFilter, Elasticity, MassSpec, Motion, Pose, Repeat, Rotation, Surface, Twist, Waypoint,
 };
 use crate::scene::{
-    BodyDescription, BodySolver, JointDescription, JointRule, MotionDescription, Rope, RotationRule, Scene, Side,
+    BodyDescription, BodySolver, ContactDescription, JointDescription, JointRule, MotionDescription, Rope,
+    RotationRule, Scene, Side,
 };
 use crate::shapes::Shape;
 
@@ -24,14 +26,12 @@ pub(super) fn build(scene: &Scene) -> (Bodies, Contacts) {
             let _ = bodies.add(spec);
         }
     }
-    let settings = ContactSettings {
-        method: scene.contacts.method,
-        relaxation: scene.contacts.relaxation(),
-        mass_scaling: scene.contacts.mass_scaling,
-        iterations: scene.contacts.iterations(),
-        ..ContactSettings::default()
+    let ContactDescription { relaxation, iterations } = scene.contacts;
+    let settings = ContactSettings { relaxation, iterations, ..ContactSettings::default() };
+    let mut contacts = match scene.legacy.changes_contacts() {
+        false => Contacts::new(&walls(scene), settings),
+        true => legacy::contacts(&walls(scene), settings, &scene.legacy),
     };
-    let mut contacts = Contacts::new(&walls(scene), settings);
     for description in &scene.joint {
         if let Some(joint) = joint(description, &bodies) {
             contacts.add_joint(joint);

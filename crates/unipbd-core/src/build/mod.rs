@@ -2,10 +2,11 @@
 
 mod bodies;
 mod carve;
+mod density;
 mod ropes;
 mod waves;
 
-use crate::constraints::{Adhesion, ConstraintGroup, Density, DensitySettings, MassDensity, ShapeMatching};
+use crate::constraints::{Adhesion, ConstraintGroup, ShapeMatching};
 use crate::coupling::RigidBodies;
 use crate::effects::{
     Baroclinic, Cohesion, Conduction, Drag, DragLaw, Effect, Heating, ShearViscosity, SmokeAdvection,
@@ -75,12 +76,10 @@ fn available_threads() -> usize {
 
 fn parts(scene: &Scene, seed: u64) -> Parts {
     let periodic = periodic(scene);
-    let settings = DensitySettings::new(scene);
     let effects = effects(scene, seed);
-    let pressure_scale = f64::from(settings.volume) * settings.moment;
-    let search_positions = match settings.gradients {
+    let search_positions = match scene.gradients() {
         GradientPoint::Predicted => SearchPositions::Predicted,
-        GradientPoint::Start | GradientPoint::Early | GradientPoint::Middle => SearchPositions::StartAndPredicted,
+        GradientPoint::Start | GradientPoint::Early => SearchPositions::StartAndPredicted,
     };
     let least_skin = if effects.is_empty() && scene.smoke.is_empty() { 0.0 } else { LEAST_SKIN * scene.spacing };
     let removal = RemovalRules::new(scene, periodic);
@@ -99,8 +98,10 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     // Sums and corrections of each iteration, and about one pass for each effect.
     let passes = 2.0 * f64::from(scene.solver.iterations) + effects.len() as f64;
     let cost = ListCost { radius: scene.solver.kernel_radius, passes };
-    let reach = real(settings.kernel_radius);
-    let groups = groups(scene, settings, ropes, rigid.as_ref());
+    let reach = real(scene.solver.kernel_radius * scene.spacing);
+    let density = density::of(scene);
+    let pressure_scale = density.pressure_scale;
+    let groups = groups(scene, density, ropes, rigid.as_ref());
     Parts {
         rigid,
         particles,
@@ -131,7 +132,7 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
 
 fn groups(
     scene: &Scene,
-    density: DensitySettings,
+    density: density::Built,
     ropes: ropes::Ropes,
     rigid: Option<&RigidBodies>,
 ) -> Vec<Box<dyn ConstraintGroup>> {
@@ -141,10 +142,7 @@ fn groups(
         groups.push(Box::new(adhesion));
     }
     if scene.materials().any(|material| material.phase().is_fluid()) {
-        groups.push(match &scene.solver.mass_density {
-            None => Box::new(Density::new(density)),
-            Some(description) => Box::new(MassDensity::new(scene, description)),
-        });
+        groups.push(density.group);
     }
     if let Some(rigid) = rigid.filter(|rigid| rigid.any_matched()) {
         groups.push(Box::new(ShapeMatching::new(rigid.members(), scene.spacing)));

@@ -10,7 +10,6 @@ mod batch;
 mod corrections;
 mod density;
 mod distance;
-mod mass_density;
 mod projection;
 mod shape_matching;
 
@@ -22,7 +21,6 @@ pub(crate) use corrections::CorrectionParts;
 pub use corrections::Corrections;
 pub use density::{Density, DensityMaterial, DensitySettings};
 pub use distance::{Distance, Tether};
-pub use mass_density::MassDensity;
 pub use shape_matching::{Member, ShapeMatching};
 
 use crate::math::{Real, Vector};

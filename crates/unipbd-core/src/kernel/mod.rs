@@ -1,48 +1,30 @@
-//! The smoothing kernel of a run: Wendland C2 for density and gradient alike, unless the scene names
-//! another one for its density.
-//!
-//! (Density by poly6 with the gradient of the spiky kernel, the pair of Müller et al. 2003, is
-//! inconsistent: a column at rest keeps boiling.)
+//! The smoothing kernel of a run: Wendland C2 for density and gradient alike.
 
 mod functions;
 
-pub use functions::{Alternative, CubicSpline, Mixed, Poly6, Shape, SlopeAsValue, Spiky, Tensile, WendlandC2};
+pub(crate) use functions::scaled;
+pub use functions::{Shape, SlopeAsValue, WendlandC2};
 
 use crate::math::{Real, real};
-use crate::scene::KernelKind;
 
 /// A kernel of radius h, for single pairs; passes over many pairs take its [`shape`](Kernel::shape).
 #[derive(Clone, Copy, Debug)]
-pub struct Kernel {
+pub struct Kernel<K = WendlandC2> {
     radius: Real,
-    shape: WendlandC2,
-    alternative: Option<Alternative>,
+    shape: K,
 }
 
 impl Kernel {
-    /// The kernel that vanishes at distance `radius` [m].
+    /// Wendland C2 that vanishes at distance `radius` [m].
     pub fn new(radius: f64) -> Self {
-        Kernel { radius: real(radius), shape: WendlandC2::new(radius), alternative: None }
+        Kernel::with_shape(radius, WendlandC2::new(radius))
     }
+}
 
-    /// The kernel of this kind.
-    pub fn of(kind: KernelKind, radius: f64) -> Self {
-        let pair = || Mixed { value: Poly6::new(radius), slope: Spiky::new(radius) };
-        let alternative = match kind {
-            KernelKind::WendlandC2 => None,
-            KernelKind::CubicSpline => Some(Alternative::CubicSpline(CubicSpline::new(radius))),
-            KernelKind::Poly6Spiky => Some(Alternative::Poly6Spiky(pair())),
-            KernelKind::Poly6Spiky3d => {
-                let pair = Mixed { value: Poly6::of_space(radius), slope: Spiky::of_space(radius) };
-                Some(Alternative::Poly6Spiky(pair))
-            }
-        };
-        Kernel { alternative, ..Kernel::new(radius) }
-    }
-
-    /// The formula where it is not Wendland C2.
-    pub fn alternative(&self) -> Option<Alternative> {
-        self.alternative
+impl<K: Shape> Kernel<K> {
+    /// The kernel of this formula, which vanishes at distance `radius` [m].
+    pub fn with_shape(radius: f64, shape: K) -> Self {
+        Kernel { radius: real(radius), shape }
     }
 
     /// Radius h [m].
@@ -50,27 +32,21 @@ impl Kernel {
         self.radius
     }
 
-    /// The formula of Wendland C2, for passes over pairs.
-    pub fn shape(&self) -> WendlandC2 {
+    /// The formula, for passes over pairs.
+    pub fn shape(&self) -> K {
         self.shape
     }
 
     /// W at distance r [1/m^2].
     #[inline]
     pub fn value(&self, r: Real) -> Real {
-        match &self.alternative {
-            None => self.shape.at(r * r).0 * self.shape.value_scale(),
-            Some(other) => other.at(r * r).0 * other.value_scale(),
-        }
+        self.shape.at(r * r).0 * self.shape.value_scale()
     }
 
     /// g at distance r, where grad W = g x [1/m^4]; never positive.
     #[inline]
     pub fn slope(&self, r: Real) -> Real {
-        match &self.alternative {
-            None => self.shape.at(r * r).1 * self.shape.slope_scale(),
-            Some(other) => other.at(r * r).1 * other.slope_scale(),
-        }
+        self.shape.at(r * r).1 * self.shape.slope_scale()
     }
 
     /// Sums over the square lattice of this spacing around a particle, itself left out.
@@ -105,29 +81,38 @@ pub struct LatticeSums {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
     use std::f64::consts::PI;
 
-    #[test]
-    fn integrates_to_one() {
-        let kernel = Kernel::new(0.7);
+    /// A kernel integrates to one over its disc, and vanishes outside.
+    pub(crate) fn check_integral(value: impl Fn(f64) -> f64, radius: f64) {
         let steps = 20_000;
-        let dr = 0.7 / f64::from(steps);
-        let integral: f64 = (0..steps)
-            .map(|i| (f64::from(i) + 0.5) * dr)
-            .map(|r| 2.0 * PI * r * f64::from(kernel.value(real(r))) * dr)
-            .sum();
-        assert!((integral - 1.0).abs() < 1e-5, "{integral}");
+        let dr = radius / f64::from(steps);
+        let rings = (0..steps).map(|k| (f64::from(k) + 0.5) * dr);
+        let integral: f64 = rings.map(|r| 2.0 * PI * r * dr * value(r)).sum();
+        assert!((integral - 1.0).abs() < 1e-5, "integral {integral}");
+        assert_eq!(value(radius * 1.01), 0.0);
+    }
+
+    /// A slope is the derivative over r, and vanishes outside.
+    pub(crate) fn check_slope(value: impl Fn(f64) -> f64, slope: impl Fn(f64) -> f64, radius: f64) {
+        for k in 1..40 {
+            let (r, step) = (radius * f64::from(k) / 40.0, radius * 2e-3);
+            let difference = (value(r + step) - value(r - step)) / (2.0 * step);
+            let scale = value(0.0) / radius;
+            assert!((slope(r) * r - difference).abs() < 0.02 * scale, "r {r}: {} {difference}", slope(r) * r);
+        }
+        assert_eq!(slope(radius * 1.01), 0.0);
     }
 
     #[test]
-    fn slope_is_the_derivative_over_r() {
-        let kernel = Kernel::new(1.3);
-        for i in 1..12 {
-            let (r, step) = (0.1 * i as Real, 1e-2);
-            let difference = (kernel.value(r + step) - kernel.value(r - step)) / (2.0 * step);
-            assert!((kernel.slope(r) * r - difference).abs() < 2e-3, "r = {r}");
+    fn the_kernel_integrates_to_one_and_its_gradient_is_the_derivative() {
+        for radius in [0.05, 0.7, 3.0] {
+            let kernel = Kernel::new(radius);
+            let value = |r: f64| f64::from(kernel.value(real(r)));
+            check_integral(value, radius);
+            check_slope(value, |r| f64::from(kernel.slope(real(r))), radius);
         }
     }
 

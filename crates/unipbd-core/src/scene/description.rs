@@ -2,7 +2,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Block, BodyDescription, ContactDescription, Disc, Emitter, Expect, Gas, HalfPlane, Heater, Injector,
-    JointDescription, Liquid, Obstacle, Points, Rope, Sink, Smoke, Solid, SolverSettings, Tank, Wave,
+    JointDescription, LegacySettings, Liquid, Obstacle, Points, Rope, Sink, Smoke, Solid, SolverSettings, Tank, Wave,
 };
 
 /// A whole scene. All quantities are in SI units; angles carry the suffix `_deg`.
@@ -29,6 +29,9 @@ pub struct Scene {
     /// How contacts of bodies are solved.
     #[serde(skip_serializing_if = "ContactDescription::is_default")]
     pub contacts: ContactDescription,
+    /// Options of the papers and the program that this project grew from.
+    #[serde(skip_serializing_if = "LegacySettings::is_default")]
+    pub legacy: LegacySettings,
     /// The air around an open scene.
     pub environment: Environment,
     /// Periodic axes and the region outside which particles are removed.
@@ -106,6 +109,7 @@ impl Default for Scene {
             seed: 0,
             solver: SolverSettings::default(),
             contacts: ContactDescription::default(),
+            legacy: LegacySettings::default(),
             environment: Environment::default(),
             domain: Domain::default(),
             view: View::default(),

@@ -1,15 +1,12 @@
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-use super::{MassDensityDescription, Preset, Scene};
+use super::Scene;
 
 /// How the constraints are solved.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct SolverSettings {
-    /// What keys that are left out are taken from.
-    #[serde(skip_serializing_if = "Preset::is_standard")]
-    pub preset: Preset,
     /// Substeps per frame: `"auto"` or a number.
     #[cfg_attr(feature = "schema", schemars(with = "SubstepsSchema"))]
     pub substeps: Substeps,
@@ -36,16 +33,6 @@ pub struct SolverSettings {
     /// stable with the kernel radius; 0 is off.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub shifting: Option<f64>,
-    /// Smoothing kernel of the density.
-    pub kernel: KernelKind,
-    /// Constraint force mixing of Macklin & Müller 2013, as a part of the denominator at rest.
-    pub constraint_mixing: f64,
-    /// Artificial pressure k of Macklin & Müller 2013 (n = 4, 0.2 h), in squared spacings.
-    pub artificial_pressure: f64,
-    /// A density weighted with masses, as printed in Macklin & Müller 2013, instead of the number
-    /// density: for comparison.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    pub mass_density: Option<MassDensityDescription>,
     /// Substeps without gravity before time 0 that bring the start to its rest density: at most this many, fewer
     /// where nothing moves any more. Left out, 100, and up to three times the layers of what is deep and narrow.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -60,7 +47,6 @@ pub struct SolverSettings {
 impl Default for SolverSettings {
     fn default() -> Self {
         SolverSettings {
-            preset: Preset::Standard,
             substeps: Substeps::Auto,
             max_substeps: 256,
             target_compression: 0.01,
@@ -70,10 +56,6 @@ impl Default for SolverSettings {
             gradients: None,
             relaxation: None,
             shifting: None,
-            kernel: KernelKind::default(),
-            constraint_mixing: 0.0,
-            artificial_pressure: 0.0,
-            mass_density: None,
             settle_substeps: None,
             coarse_projection: 0,
             sleep: false,
@@ -87,9 +69,7 @@ struct ByRadius {
     radius: f64,
     /// Relaxation that is stable with a free surface and gradients at the start or at the prediction...
     free: f64,
-    /// ...with a constraint taken half way...
-    half_way: f64,
-    /// ...or early...
+    /// ...with a constraint taken early...
     early: f64,
     /// ...and in fluids that resist dilation too. One iteration per substep is linearly stable below
     /// 4/(3 lambda_max), lambda_max the largest eigenvalue of the iteration (2.9, 3.15 and 3.9 at 2, 2.5 and
@@ -106,10 +86,10 @@ struct ByRadius {
 
 #[rustfmt::skip]
 const BY_RADIUS: [ByRadius; 4] = [
-    ByRadius { radius: 2.0, free: 0.5, half_way: 0.62, early: 0.73, filled: 0.4, shifting: 0.03, compressibility: 0.533 },
-    ByRadius { radius: 2.5, free: 0.5, half_way: 0.57, early: 0.67, filled: 0.4, shifting: 0.04, compressibility: 0.335 },
-    ByRadius { radius: 3.0, free: 0.36, half_way: 0.48, early: 0.57, filled: 0.33, shifting: 0.03, compressibility: 0.183 },
-    ByRadius { radius: 4.0, free: 0.24, half_way: 0.28, early: 0.33, filled: 0.19, shifting: 0.015, compressibility: 0.062 },
+    ByRadius { radius: 2.0, free: 0.5, early: 0.73, filled: 0.4, shifting: 0.03, compressibility: 0.533 },
+    ByRadius { radius: 2.5, free: 0.5, early: 0.67, filled: 0.4, shifting: 0.04, compressibility: 0.335 },
+    ByRadius { radius: 3.0, free: 0.36, early: 0.57, filled: 0.33, shifting: 0.03, compressibility: 0.183 },
+    ByRadius { radius: 4.0, free: 0.24, early: 0.33, filled: 0.19, shifting: 0.015, compressibility: 0.062 },
 ];
 
 impl SolverSettings {
@@ -117,7 +97,6 @@ impl SolverSettings {
     pub fn relaxation_of_liquids(&self, gradients: GradientPoint) -> f64 {
         self.relaxation.unwrap_or_else(|| match gradients {
             GradientPoint::Early => self.by_radius(|row| row.early),
-            GradientPoint::Middle => self.by_radius(|row| row.half_way),
             GradientPoint::Start | GradientPoint::Predicted => self.by_radius(|row| row.free),
         })
     }
@@ -153,7 +132,7 @@ impl Scene {
     /// Where the density constraint is evaluated: what `solver.gradients` says, or else what suits the fluids.
     pub fn gradients(&self) -> GradientPoint {
         let fluids = || self.materials().filter(|material| material.phase().is_fluid());
-        let default = if fluids().next().is_none() || self.solver.mass_density.is_some() {
+        let default = if fluids().next().is_none() {
             GradientPoint::Predicted
         } else if fluids().any(|fluid| fluid.is_two_sided()) {
             GradientPoint::Start
@@ -164,43 +143,6 @@ impl Scene {
         };
         self.solver.gradients.unwrap_or(default)
     }
-}
-
-/// Reads a table of which any key may be missing: the preset has them all.
-macro_rules! read_over_preset {
-    ($($key:ident: $kind:ty),* $(,)?) => {
-        impl<'de> Deserialize<'de> for SolverSettings {
-            fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-                #[derive(Default, Deserialize)]
-                #[serde(deny_unknown_fields, default)]
-                struct Keys {
-                    preset: Preset,
-                    $($key: Option<$kind>),*
-                }
-                let keys = Keys::deserialize(deserializer)?;
-                let preset = keys.preset.settings();
-                Ok(SolverSettings { preset: keys.preset, $($key: keys.$key.unwrap_or(preset.$key)),* })
-            }
-        }
-    };
-}
-read_over_preset! {
-    substeps: Substeps,
-    max_substeps: u32,
-    target_compression: f64,
-    iterations: u32,
-    tolerance: f64,
-    kernel_radius: f64,
-    gradients: Option<GradientPoint>,
-    relaxation: Option<f64>,
-    shifting: Option<f64>,
-    kernel: KernelKind,
-    constraint_mixing: f64,
-    artificial_pressure: f64,
-    mass_density: Option<MassDensityDescription>,
-    settle_substeps: Option<u32>,
-    coarse_projection: u32,
-    sleep: bool,
 }
 
 /// Substeps per frame.
@@ -267,37 +209,16 @@ pub enum GradientPoint {
     Start,
     /// Value and gradient at x_n + 0.3 dt v, soon after the start (least damping that holds a surface calm).
     Early,
-    /// Value and gradient half way between start and prediction (less damping).
-    Middle,
     /// At the predicted positions.
     Predicted,
 }
 
 impl GradientPoint {
     /// How far behind the prediction the whole constraint is taken, as a part of a substep.
-    pub const fn behind(self) -> Option<f64> {
+    pub const fn behind(self) -> f64 {
         match self {
-            GradientPoint::Early => Some(0.7),
-            GradientPoint::Middle => Some(0.5),
-            GradientPoint::Start | GradientPoint::Predicted => None,
+            GradientPoint::Early => 0.7,
+            GradientPoint::Start | GradientPoint::Predicted => 0.0,
         }
     }
-}
-
-/// The smoothing kernel of the density.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum KernelKind {
-    /// Wendland C2: the most accurate.
-    #[default]
-    WendlandC2,
-    /// The cubic spline of Monaghan 1992.
-    CubicSpline,
-    /// Density by poly6, gradients by spiky, as in Müller et al. 2003: inconsistent, for comparison.
-    Poly6Spiky,
-    /// The same with the constants of three dimensions, per metre of depth. They matter with a density
-    /// weighted with masses alone: a number density is scaled to its lattice at rest.
-    #[serde(rename = "poly6_spiky_3d")]
-    Poly6Spiky3d,
 }

@@ -10,7 +10,7 @@ use crate::step::Clock;
 
 const MAGIC: &[u8; 8] = b"unipbd\0S";
 /// Goes up with every change of what follows.
-const VERSION: u32 = 5;
+const VERSION: u32 = 6;
 const CHECKSUM_BYTES: usize = 8;
 
 impl State {

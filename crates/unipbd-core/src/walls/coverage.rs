@@ -3,7 +3,7 @@
 //! With Phi(a, b) the integral of W over x < a, y < b, any axis-aligned box, corner or half-plane
 //! is a sum of a few values of Phi: walls count in the density as if they were fluid at rest.
 
-use crate::kernel::Kernel;
+use crate::kernel::{Kernel, Shape};
 use crate::math::{Real, Vector, real};
 
 const CELLS: usize = 128;
@@ -29,7 +29,7 @@ pub struct Coverage {
 
 impl Coverage {
     /// Tables for this kernel.
-    pub fn new(kernel: &Kernel) -> Self {
+    pub fn new<K: Shape>(kernel: &Kernel<K>) -> Self {
         Coverage::tabulate(kernel, |distance| (distance, 1.0))
     }
 
@@ -43,7 +43,7 @@ impl Coverage {
     ///
     /// With u = d - dx/2: seen(d) = d + b u (1 - u/(h - dx/2))^2 for u > 0, d + b u for 0 < d < dx/2, and
     /// behind the surface the shift stays what it is there.
-    pub fn upholding(kernel: &Kernel, spacing: f64) -> Self {
+    pub fn upholding<K: Shape>(kernel: &Kernel<K>, spacing: f64) -> Self {
         let reach = f64::from(kernel.radius()) - 0.5 * spacing;
         Coverage::tabulate(kernel, |distance| {
             let apart = distance.max(0.0) - 0.5 * spacing;
@@ -55,7 +55,7 @@ impl Coverage {
 
     /// Tables of a kernel that sees a wall at another distance than the true one: `stretch` tells that and its
     /// derivative.
-    fn tabulate(kernel: &Kernel, stretch: impl Fn(f64) -> (f64, f64)) -> Self {
+    fn tabulate<K: Shape>(kernel: &Kernel<K>, stretch: impl Fn(f64) -> (f64, f64)) -> Self {
         let radius = f64::from(kernel.radius());
         let step = 2.0 * radius / CELLS as f64;
         // The inside of a wall is at x < a: its surface is at the distance -a.
@@ -131,7 +131,7 @@ impl Coverage {
     }
 }
 
-fn value(kernel: &Kernel, x: f64, y: f64) -> f64 {
+fn value<K: Shape>(kernel: &Kernel<K>, x: f64, y: f64) -> f64 {
     f64::from(kernel.value(real((x * x + y * y).sqrt())))
 }
 

@@ -1,14 +1,31 @@
-//! Options of the contacts: averaged Jacobi with friction of positions, and mass scaling.
+//! Options of the contacts: iterations, and those of Macklin et al. 2014: averaged Jacobi with friction of positions,
+//! and mass scaling.
 
 use super::world::{FRAME, GRAVITY, World, at, body, floor, never_asleep, unit_box};
 use unipbd_core::Vector64;
+use unipbd_core::legacy;
 use unipbd_core::rigid::Wall;
-use unipbd_core::rigid::contact::{ContactMethod, ContactSettings};
+use unipbd_core::rigid::contact::ContactSettings;
 use unipbd_core::rigid::{BodySpec, Pose, Surface, Twist};
+use unipbd_core::scene::LegacySettings;
 use unipbd_core::shapes::Shape;
 
-fn averaged(relaxation: f64) -> ContactSettings {
-    ContactSettings { method: ContactMethod::Averaged, relaxation, ..never_asleep() }
+/// A world whose contacts are solved as the options for comparison say.
+fn legacy_world(walls: &[Wall], options: &LegacySettings) -> World {
+    World { contacts: legacy::contacts(walls, never_asleep(), options), ..World::new(walls) }
+}
+
+/// A floor under a stack.
+fn ground() -> [Wall; 1] {
+    [floor(Surface::with_friction(0.5))]
+}
+
+fn averaged(relaxation: f64) -> LegacySettings {
+    LegacySettings { averaged_contacts: Some(relaxation), ..LegacySettings::default() }
+}
+
+fn scaled(mass_scaling: f64) -> LegacySettings {
+    LegacySettings { mass_scaling, ..LegacySettings::default() }
 }
 
 /// Distance that a box goes down a slope in two seconds, after half a second, and its acceleration.
@@ -17,7 +34,7 @@ fn slide(tangent: f64, mu: f64, relaxation: f64) -> (f64, f64) {
     let normal = Vector64::from_angle(angle).perp();
     let surface = Surface::with_friction(mu);
     let plane = Wall::half_plane(Vector64::ZERO, normal, surface);
-    let mut world = World::with_settings(&[plane], averaged(relaxation));
+    let mut world = legacy_world(&[plane], &averaged(relaxation));
     let pose = Pose { position: normal * 0.5, angle };
     world.add(BodySpec { pose, ..body(Shape::rectangle(1.0, 1.0), Vector64::ZERO, surface) });
     world.run(0.5);
@@ -44,7 +61,7 @@ fn averaged_contacts_let_a_box_slide_iff_the_slope_exceeds_the_friction_angle() 
 
 #[test]
 fn averaged_contacts_keep_linear_and_angular_momentum() {
-    let mut world = World::with_settings(&[], averaged(1.5));
+    let mut world = legacy_world(&[], &averaged(1.5));
     world.gravity = Vector64::ZERO;
     for k in 0..30 {
         let k = f64::from(k);
@@ -67,8 +84,7 @@ fn averaged_contacts_keep_linear_and_angular_momentum() {
 }
 
 /// How far the top of a stack of boxes, each a little out of line, comes from where it was put in 10 s [m].
-fn lean(boxes: u32, substeps: u32, settings: ContactSettings) -> f64 {
-    let mut world = World::with_settings(&[floor(Surface::with_friction(0.5))], settings);
+fn lean(boxes: u32, substeps: u32, mut world: World) -> f64 {
     world.substeps = substeps;
     for k in 0..boxes {
         let k = f64::from(k);
@@ -86,16 +102,17 @@ fn lean(boxes: u32, substeps: u32, settings: ContactSettings) -> f64 {
 #[test]
 fn mass_scaling_lets_a_stack_stand_with_fewer_substeps() {
     for substeps in [1, 2, 4, 8] {
-        let with = |mass_scaling| lean(20, substeps, ContactSettings { mass_scaling, ..never_asleep() });
+        let with = |k| lean(20, substeps, legacy_world(&ground(), &scaled(k)));
         println!("20 boxes, {substeps} substeps: without {:.2e} m, k = 1/m {:.2e} m", with(0.0), with(1.0));
     }
-    let scaled = ContactSettings { mass_scaling: 1.0, ..never_asleep() };
-    assert!(lean(20, 2, never_asleep()) > 1.0 && lean(20, 2, scaled) < 0.1);
+    let (plain, scaled) = (World::new(&ground()), legacy_world(&ground(), &scaled(1.0)));
+    assert!(lean(20, 2, plain) > 1.0 && lean(20, 2, scaled) < 0.1);
 }
 
 #[test]
 fn more_iterations_let_a_stack_stand_with_fewer_substeps() {
-    let with = |iterations| lean(20, 4, ContactSettings { iterations, ..never_asleep() });
+    let settings = |iterations| ContactSettings { iterations, ..never_asleep() };
+    let with = |iterations| lean(20, 4, World::with_settings(&ground(), settings(iterations)));
     let (one, four) = (with(1), with(4));
     println!("20 boxes, 4 substeps: {one:.2e} m with one iteration, {four:.2e} m with four");
     assert!(one > 0.5 && four < 0.1);
@@ -103,7 +120,8 @@ fn more_iterations_let_a_stack_stand_with_fewer_substeps() {
 
 #[test]
 fn mass_scaling_holds_averaged_stacks_up() {
-    let with = |mass_scaling| lean(5, 8, ContactSettings { mass_scaling, ..averaged(1.0) });
+    let options = |mass_scaling| LegacySettings { mass_scaling, ..averaged(1.0) };
+    let with = |mass_scaling| lean(5, 8, legacy_world(&ground(), &options(mass_scaling)));
     let (plain, scaled) = (with(0.0), with(3.0));
     println!("5 boxes, averaged, 8 substeps: without {plain:.2e} m, k = 3/m {scaled:.2e} m");
     assert!(plain > 1.0 && scaled < 0.05);
@@ -111,10 +129,9 @@ fn mass_scaling_holds_averaged_stacks_up() {
 
 #[test]
 fn mass_scaling_does_not_depend_on_where_a_heap_stands() {
-    let scaled = ContactSettings { mass_scaling: 1.0, ..never_asleep() };
     let lowest = |ground: f64| {
         let plane = Wall::half_plane(at(0.0, ground), Vector64::Y, Surface::with_friction(0.5));
-        let mut world = World::with_settings(&[plane], scaled);
+        let mut world = legacy_world(&[plane], &scaled(1.0));
         (0..5).for_each(|k| {
             world.add(unit_box(at(0.0, ground + 0.5 + f64::from(k))));
         });

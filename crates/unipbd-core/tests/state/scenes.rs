@@ -1,8 +1,8 @@
 //! Small scenes of every kind.
 
 use unipbd_core::scene::{
-    Block, BodyDescription, Disc, Emitter, Environment, Gas, Liquid, PointMotion, Points, Profile, Scene, Sheath,
-    Smoke, SmokeSource, Solid, SolverSettings, Substeps, Tank,
+    Block, BodyDescription, Disc, Emitter, Environment, Gas, LegacyKernel, LegacySettings, Liquid, PointMotion, Points,
+    Profile, Scene, Sheath, Smoke, SmokeSource, Solid, SolverSettings, Substeps, Tank,
 };
 use unipbd_core::{BuildOptions, Solver};
 
@@ -106,8 +106,28 @@ pub fn coarse() -> Scene {
     Scene { solver, ..liquid() }
 }
 
-pub fn all() -> [(&'static str, Scene); 5] {
-    [("liquid", liquid()), ("plume", plume()), ("mixed", mixed()), ("bodies", bodies()), ("coarse", coarse())]
+/// The same bodies and pool with the options that are there for comparison.
+pub fn legacy() -> Scene {
+    let legacy = LegacySettings {
+        kernel: LegacyKernel::CubicSpline,
+        constraint_mixing: 0.5,
+        artificial_pressure: 0.02,
+        mass_density: None,
+        averaged_contacts: Some(1.0),
+        mass_scaling: 1.0,
+    };
+    Scene { legacy, ..bodies() }
+}
+
+pub fn all() -> [(&'static str, Scene); 6] {
+    [
+        ("liquid", liquid()),
+        ("plume", plume()),
+        ("mixed", mixed()),
+        ("bodies", bodies()),
+        ("coarse", coarse()),
+        ("legacy", legacy()),
+    ]
 }
 
 pub fn build(scene: &Scene) -> Solver {

@@ -22,6 +22,7 @@ fn drag(trial: &Trial) -> Result<Measured, Failure> {
     let scene = Scene {
         spacing,
         solver: trial.solver.clone(),
+        legacy: trial.legacy.clone(),
         gas: vec![gas],
         block: vec![Block { temperature: 1.0, ..Block::new("gas", [0.0, 0.0], [spacing, spacing]) }],
         ..Scene::default()

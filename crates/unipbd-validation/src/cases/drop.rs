@@ -24,6 +24,7 @@ fn elliptical(trial: &Trial) -> Result<Measured, Failure> {
         gravity: [0.0; 2],
         fps: 100.0,
         solver: trial.solver.clone(),
+        legacy: trial.legacy.clone(),
         liquid: vec![Liquid::new("water", 1000.0)],
         disc: vec![Disc {
             material: "water".to_owned(),

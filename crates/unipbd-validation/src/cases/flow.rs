@@ -53,6 +53,7 @@ fn taylor_green(trial: &Trial, reynolds: f64, band: Band) -> Result<Measured, Fa
         gravity: [0.0; 2],
         fps: 100.0,
         solver: trial.solver.clone(),
+        legacy: trial.legacy.clone(),
         domain: Domain { periodic_x: Some([0.0, 1.0]), periodic_y: Some([0.0, 1.0]), ..Domain::default() },
         liquid: vec![filling(1.0 / reynolds)],
         // A lattice resists shear until it is broken up.
@@ -122,7 +123,7 @@ const SPEED: f64 = 1.0;
 const VISCOSITY: f64 = 0.1;
 
 fn channel(trial: &Trial, drive: Drive) -> Result<Measured, Failure> {
-    let mut run = trial.start(&channel_scene(trial.resolution, drive, &trial.solver))?;
+    let mut run = trial.start(&channel_scene(drive, trial))?;
     let profile = |y: f64, tau: f64| match drive {
         Drive::Lid => couette(y, tau),
         Drive::Force => poiseuille(y, tau),
@@ -147,8 +148,8 @@ fn channel(trial: &Trial, drive: Drive) -> Result<Measured, Failure> {
     Ok((figures, run.cost))
 }
 
-fn channel_scene(resolution: u32, drive: Drive, solver: &SolverSettings) -> Scene {
-    let spacing = 1.0 / f64::from(resolution);
+fn channel_scene(drive: Drive, trial: &Trial) -> Scene {
+    let spacing = 1.0 / f64::from(trial.resolution);
     let length = 16.0 * spacing;
     let wall = |y: f64, normal: f64, speed: f64| HalfPlane {
         velocity: [speed, 0.0],
@@ -163,7 +164,8 @@ fn channel_scene(resolution: u32, drive: Drive, solver: &SolverSettings) -> Scen
         spacing,
         gravity: [force, 0.0],
         fps: 100.0,
-        solver: solver.clone(),
+        solver: trial.solver.clone(),
+        legacy: trial.legacy.clone(),
         domain: Domain { periodic_x: Some([0.0, length]), ..Domain::default() },
         liquid: vec![filling(VISCOSITY)],
         block: vec![Block::new("fluid", [0.0, 0.0], [length, 1.0])],

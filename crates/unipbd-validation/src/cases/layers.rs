@@ -15,6 +15,7 @@ fn layers(width: f64, upper: (f64, f64), lower: (f64, f64), trial: &Trial) -> Sc
     Scene {
         spacing: SPACING,
         solver: trial.solver.clone(),
+        legacy: trial.legacy.clone(),
         liquid: vec![Liquid::new("lower", lower.0), Liquid::new("upper", upper.0)],
         block: vec![Block::new("lower", [0.0, 0.0], [right, middle]), Block::new("upper", [0.0, middle], [right, top])],
         tank: vec![Tank { open: Vec::new(), ..Tank::new([0.0, 0.0], [right, top]) }],

@@ -37,7 +37,7 @@ pub const COLUMN: Case = Case {
 
 fn column(trial: &Trial) -> Result<Measured, Failure> {
     let depth = f64::from(trial.resolution);
-    let mut scene = pool((16.0, depth), 16.0, &trial.solver);
+    let mut scene = pool((16.0, depth), 16.0, trial);
     scene.tank[0].name = "tank".to_owned();
     let mut run = trial.start(&scene)?;
     // Sound has died down after 20 sqrt(H/g); the last half second is measured.
@@ -105,7 +105,7 @@ pub const DAM_BREAK: Case = Case {
 
 fn dam_break(trial: &Trial) -> Result<Measured, Failure> {
     let a = f64::from(trial.resolution);
-    let mut run = trial.start(&pool((a, 2.0 * a), 6.0 * a, &trial.solver))?;
+    let mut run = trial.start(&pool((a, 2.0 * a), 6.0 * a, trial))?;
     let width = a * SPACING;
     let scale = (2.0 * GRAVITY / width).sqrt();
     let start = energy(&run.solver);
@@ -206,7 +206,7 @@ fn float(trial: &Trial, ratio: f64) -> Result<(f64, f64, crate::Cost), Failure> 
     let width = f64::from(trial.resolution);
     let height = (0.4 * width).round();
     let (pool_width, depth) = (4.0 * width, 1.5 * width);
-    let mut scene = pool((pool_width, depth), pool_width, &trial.solver);
+    let mut scene = pool((pool_width, depth), pool_width, trial);
     let centre = depth + height * (0.5 - ratio) + 0.5;
     let mut floating = body("box", [0.5 * pool_width * SPACING, centre * SPACING]);
     floating.size = Some([width * SPACING, height * SPACING]);

@@ -28,7 +28,7 @@ const STEEPNESS: f64 = 0.05;
 
 fn standing_wave(trial: &Trial) -> Result<Measured, Failure> {
     let cells = f64::from(trial.resolution);
-    let mut run = trial.start(&pool((cells, 0.5 * cells), cells, &trial.solver))?;
+    let mut run = trial.start(&pool((cells, 0.5 * cells), cells, trial))?;
     let (length, depth) = (cells * SPACING, 0.5 * cells * SPACING);
     let k = PI / length;
     let omega = (GRAVITY * k * (k * depth).tanh()).sqrt();

@@ -14,16 +14,16 @@ pub use settings::{DensityMaterial, DensitySettings};
 
 use super::{ConstraintGroup, Corrections, DensityColumns, DensityGroup, Needs, Substep};
 use crate::bytes::held;
-use crate::kernel::Kernel;
+use crate::kernel::{Kernel, Shape, WendlandC2};
 use crate::math::{Real, Vector};
 use crate::passes::Records;
 use crate::walls::Coverage;
 use places::Places;
 
 /// The density constraints of all liquids and gases of a scene.
-pub struct Density {
+pub struct Density<K = WendlandC2> {
     settings: DensitySettings,
-    kernel: Kernel,
+    kernel: Kernel<K>,
     coverage: Coverage,
     /// Kernel sums by row: sum W, sum grad W, sum w |grad W|^2.
     sums: Sums,
@@ -57,10 +57,9 @@ impl Sums {
     }
 }
 
-impl Density {
-    /// A group with these settings.
-    pub fn new(settings: DensitySettings) -> Self {
-        let kernel = Kernel::of(settings.kernel, settings.kernel_radius);
+impl<K: Shape> Density<K> {
+    /// A group with this kernel and these settings.
+    pub fn new(kernel: Kernel<K>, settings: DensitySettings) -> Self {
         Density {
             kernel,
             coverage: match settings.upheld {
@@ -85,9 +84,30 @@ impl Density {
         self.multiplier.resize(rows, 0.0);
         self.wall_gradient.resize(rows, Vector::ZERO);
     }
+
+    /// The first half of an iteration: the kernel sums.
+    pub(crate) fn begin_iteration(&mut self, now: Substep<'_>) {
+        self.places.find(now);
+        self.sum_kernels(now);
+    }
+
+    /// The sums of w |grad W|^2 of the iteration that has begun, by row [1/(kg m^6)].
+    pub(crate) fn responses_mut(&mut self) -> &mut [Real] {
+        &mut self.sums.response
+    }
+
+    /// The second half: multipliers and displacements.
+    pub(crate) fn end_iteration(&mut self, now: Substep<'_>, out: &mut Corrections) {
+        self.step_multipliers(now);
+        self.shift(now, out);
+        self.correct(now, out);
+        self.load_bodies(now, out);
+        self.load_walls(now, out);
+        self.repel(now, out);
+    }
 }
 
-impl ConstraintGroup for Density {
+impl<K: Shape> ConstraintGroup for Density<K> {
     fn name(&self) -> &str {
         "density"
     }
@@ -105,15 +125,8 @@ impl ConstraintGroup for Density {
     }
 
     fn project(&mut self, now: Substep<'_>, out: &mut Corrections) {
-        self.places.find(now);
-        self.sum_kernels(now);
-        self.step_multipliers(now);
-        self.shift(now, out);
-        self.correct(now, out);
-        self.load_bodies(now, out);
-        self.load_walls(now, out);
-        self.repel(now, out);
-        self.press_apart(now, out);
+        self.begin_iteration(now);
+        self.end_iteration(now, out);
     }
 
     fn memory_bytes(&self) -> usize {
@@ -137,7 +150,7 @@ impl ConstraintGroup for Density {
     }
 }
 
-impl DensityGroup for Density {
+impl<K: Shape> DensityGroup for Density<K> {
     fn columns(&self) -> DensityColumns<'_> {
         DensityColumns { error: &self.error, multiplier: &self.multiplier }
     }

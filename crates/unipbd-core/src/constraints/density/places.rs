@@ -5,6 +5,7 @@ use crate::constraints::Substep;
 use crate::math::{Real, Vector, larger, real};
 use crate::particles::Particles;
 use crate::scene::{COURANT, GradientPoint};
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// Farther than this many spacings from the origin f32 keeps too few digits of a position for kernels.
@@ -31,7 +32,7 @@ pub(super) struct Places {
 
 impl Places {
     pub fn new(gradients: GradientPoint, spacing: f64) -> Places {
-        let behind = real(gradients.behind().unwrap_or(0.0));
+        let behind = real(gradients.behind());
         let (far, longest_way) = (FAR * real(spacing), real(COURANT) * real(spacing));
         Places { gradients, far, behind, longest_way, earlier: Vec::new(), value: Vec::new(), gradient: Vec::new() }
     }
@@ -40,7 +41,7 @@ impl Places {
         held(&self.earlier) + held(&self.value) + held(&self.gradient)
     }
 
-    /// Finds the places of an iteration.
+    /// Finds the places of an [`iteration`](Self::iteration).
     pub fn find(&mut self, now: Substep<'_>) {
         self.find_earlier(now);
         let fine = self.is_far(now.particles);
@@ -89,43 +90,55 @@ impl Places {
         now.parallelism.fill(&mut self.gradient, |row| (starts[row] - origin) + remainders[row]);
     }
 
-    /// The positions as they are after a substep, for differences of them alone, where f32 would spoil those.
-    pub fn settled(&self, now: Substep<'_>) -> Option<Vec<Vector>> {
+    /// The positions after a substep, for differences between particles alone.
+    pub fn measured<'a>(&self, now: Substep<'a>) -> Cow<'a, [Vector]> {
         let (positions, remainders) = (now.particles.positions(), &now.particles.remainder);
-        self.is_far(now.particles).then(|| {
-            let origin = middle_of(now, positions);
-            (0..now.particles.dense()).map(|row| (positions[row] - origin) + remainders[row]).collect()
-        })
+        if !self.is_far(now.particles) {
+            return Cow::Borrowed(&positions[..now.particles.dense()]);
+        }
+        let origin = middle_of(now, positions);
+        Cow::Owned((0..now.particles.dense()).map(|row| (positions[row] - origin) + remainders[row]).collect())
     }
 
-    /// Positions at which the density is taken.
-    pub fn values<'a>(&'a self, now: Substep<'a>) -> &'a [Vector] {
-        if self.behind == 0.0 { now.particles.positions() } else { &self.earlier }
+    /// The places of the iteration that were [found](Self::find).
+    pub fn iteration<'a>(&'a self, now: Substep<'a>) -> Iteration<'a> {
+        let rows = now.particles.dense();
+        let split = self.gradients == GradientPoint::Start;
+        let points = |value: &'a [Vector], start: &'a [Vector]| Points {
+            value,
+            gradient: &(if split { start } else { value })[..rows],
+            split,
+        };
+        let value = if self.behind == 0.0 { now.particles.positions() } else { &self.earlier };
+        let world = points(value, now.particles.starts());
+        let pairs = if self.value.is_empty() { world } else { points(&self.value, &self.gradient) };
+        Iteration { world, pairs }
     }
+}
 
-    /// Positions at which gradients are taken, if elsewhere.
-    pub fn other_gradients<'a>(&'a self, now: Substep<'a>) -> Option<&'a [Vector]> {
-        (self.gradients == GradientPoint::Start).then(|| now.particles.starts())
-    }
+/// Where an iteration takes the density constraint.
+pub(super) struct Iteration<'a> {
+    /// Places in the world, for walls.
+    pub world: Points<'a>,
+    /// Places for differences between particles alone: far from the origin in digits that f32 has for them.
+    pub pairs: Points<'a>,
+}
 
-    /// Positions at which gradients are taken.
-    pub fn gradients<'a>(&'a self, now: Substep<'a>) -> &'a [Vector] {
-        &self.other_gradients(now).unwrap_or(self.values(now))[..now.particles.dense()]
-    }
+/// Positions by row.
+#[derive(Clone, Copy)]
+pub(super) struct Points<'a> {
+    /// Where the density is taken.
+    pub value: &'a [Vector],
+    /// Where its gradient is taken.
+    pub gradient: &'a [Vector],
+    /// Whether these are different places.
+    split: bool,
+}
 
-    /// As [`values`](Self::values), for differences of positions alone.
-    pub fn pair_values<'a>(&'a self, now: Substep<'a>) -> &'a [Vector] {
-        if self.value.is_empty() { self.values(now) } else { &self.value }
-    }
-
-    /// As [`other_gradients`](Self::other_gradients), for differences of positions alone.
-    pub fn other_pair_gradients<'a>(&'a self, now: Substep<'a>) -> Option<&'a [Vector]> {
-        if self.gradient.is_empty() { self.other_gradients(now) } else { Some(&self.gradient) }
-    }
-
-    /// As [`gradients`](Self::gradients), for differences of positions alone.
-    pub fn pair_gradients<'a>(&'a self, now: Substep<'a>) -> &'a [Vector] {
-        &self.other_pair_gradients(now).unwrap_or(self.pair_values(now))[..now.particles.dense()]
+impl<'a> Points<'a> {
+    /// Where the gradient is taken, if not where the density is.
+    pub fn other_gradient(&self) -> Option<&'a [Vector]> {
+        self.split.then_some(self.gradient)
     }
 }
 

@@ -13,6 +13,7 @@
 
 use super::Density;
 use crate::constraints::Substep;
+use crate::kernel::Shape;
 use crate::math::{Real, Vector, larger};
 use crate::phase::Phase;
 
@@ -72,7 +73,7 @@ fn is_pressed(now: Substep<'_>, row: usize) -> bool {
     now.particles.phases()[row].is_fluid() && now.particles.inverse_masses()[row] > 0.0
 }
 
-impl Density {
+impl<K: Shape> Density<K> {
     /// Pressure over density by row [m^2/s^2]; 0 for what is no fluid.
     pub(super) fn read_pressures(&self, now: Substep<'_>) -> Vec<Real> {
         let particles = now.particles;

@@ -1,16 +1,12 @@
-use crate::kernel::Kernel;
+use crate::kernel::{Kernel, Shape};
 use crate::math::{Real, real};
 use crate::passes::Reach;
 use crate::phase::Phase;
-use crate::scene::{GradientPoint, KernelKind, MaterialRef, Scene};
+use crate::scene::{GradientPoint, MaterialRef, Scene};
 
 /// Settings of the density group.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DensitySettings {
-    /// Smoothing kernel.
-    pub kernel: KernelKind,
-    /// Kernel radius h [m].
-    pub kernel_radius: f64,
     /// Particle spacing dx [m].
     pub spacing: f64,
     /// What one neighbour counts: its volume, scaled so that the rest lattice reads 1 [m^2].
@@ -30,8 +26,6 @@ pub struct DensitySettings {
     pub farthest_shift: Option<Real>,
     /// Where the fastest goes less far in a substep, all are shifted less [m].
     pub whole_shift: Real,
-    /// Artificial pressure of Macklin & Müller 2013 [m^2]; 0 is none.
-    pub artificial_pressure: Real,
     /// Per material.
     pub materials: Vec<DensityMaterial>,
 }
@@ -50,8 +44,6 @@ pub struct DensityMaterial {
     /// The same for particles moved by a script, whose own response is missing from the denominator: what
     /// they barely touch must not be thrown [1/(kg m^2)].
     pub scripted_response_min: Real,
-    /// Added to the denominator: constraint force mixing [1/(kg m^2)].
-    pub mixing: Real,
     /// Mass of a particle [kg]: times the pressure limit it bounds the multiplier.
     pub mass: Real,
     /// How far it is shifted down the gradient of the kernel sum, to even out the arrangement [m^2].
@@ -83,10 +75,8 @@ const WHOLE_SHIFT: f64 = 0.15;
 const SHIFT_GATE: [Real; 2] = [-0.15, -0.05];
 
 impl DensitySettings {
-    /// The settings a scene asks for.
-    pub fn new(scene: &Scene) -> Self {
-        let radius = scene.solver.kernel_radius * scene.spacing;
-        let kernel = Kernel::of(scene.solver.kernel, radius);
+    /// The settings a scene asks for, with this kernel.
+    pub fn new<K: Shape>(scene: &Scene, kernel: &Kernel<K>) -> Self {
         let sums = kernel.lattice(scene.spacing);
         let volume = 1.0 / (sums.value + f64::from(kernel.value(0.0)));
         let rest_response = volume * volume * sums.gradient_squared;
@@ -96,14 +86,11 @@ impl DensitySettings {
         let shifts = materials.iter().any(|material| material.shifting > 0.0);
         let repels = materials.iter().any(|material| material.repulsion > 0.0);
         DensitySettings {
-            kernel: scene.solver.kernel,
-            kernel_radius: radius,
             spacing: scene.spacing,
             volume: real(volume),
             moment: sums.moment,
             gradients: scene.gradients(),
             uniform_inverse_mass: uniform_mass(scene).map(|mass| real(1.0 / mass)),
-            artificial_pressure: real(scene.solver.artificial_pressure * scene.spacing * scene.spacing),
             upheld: !two_sided,
             repulsion: repels.then(|| repulsion_reach(scene.spacing)),
             farthest_shift: shifts.then(|| real(FARTHEST_SHIFT * scene.spacing)),
@@ -126,7 +113,6 @@ impl DensityMaterial {
             gate: Real::NEG_INFINITY,
             response_min: real(1e-6 * response),
             scripted_response_min: real(SCRIPTED_RESPONSE_FLOOR * response),
-            mixing: real(scene.solver.constraint_mixing * response),
             mass: real(mass),
             shifting: 0.0,
             repulsion: 0.0,
@@ -160,7 +146,6 @@ impl DensityMaterial {
         gate: Real::NEG_INFINITY,
         response_min: 1.0,
         scripted_response_min: 1.0,
-        mixing: 0.0,
         mass: 0.0,
         shifting: 0.0,
         repulsion: 0.0,

@@ -1,8 +1,9 @@
 //! The three passes of one density iteration.
 
+use super::places::Points;
 use super::{Density, DensityMaterial};
 use crate::constraints::{Corrections, Substep};
-use crate::kernel::{Shape, Tensile};
+use crate::kernel::Shape;
 use crate::math::{Real, Vector, larger, smaller, wide};
 use crate::neighbors::near::{self, Near, Work};
 use crate::neighbors::weigh::{At, Weighed};
@@ -13,12 +14,13 @@ use crate::simd::Level;
 use crate::simd::space::{Open, Space, Wrapped};
 use crate::walls::Coverage;
 
-impl Density {
+impl<K: Shape> Density<K> {
     /// Pass 1: sums of the kernel, its gradient and the response of the neighbours.
     pub(super) fn sum_kernels(&mut self, now: Substep<'_>) {
+        let points = self.places.iteration(now).pairs;
         let input = DensityInput {
-            positions: self.places.pair_values(now),
-            gradient_positions: self.places.other_pair_gradients(now),
+            positions: points.value,
+            gradient_positions: points.other_gradient(),
             weights: match self.settings.uniform_inverse_mass {
                 Some(inverse_mass) if !now.particles.any_scripted() => Weights::Uniform(inverse_mass),
                 _ => Weights::Column(now.particles.inverse_masses()),
@@ -26,21 +28,13 @@ impl Density {
         };
         let sums = &mut self.sums;
         let out = DensityOutput { value: &mut sums.value, gradient: &mut sums.gradient, response: &mut sums.response };
-        match self.kernel.alternative() {
-            None => passes::density(now.pairs(), self.kernel.shape(), input, out),
-            Some(other) => passes::density(now.pairs(), other, input, out),
-        }
+        passes::density(now.pairs(), self.kernel.shape(), input, out);
     }
 
     /// Pass 2: density errors and the relaxed step of each multiplier.
     pub(super) fn step_multipliers(&mut self, now: Substep<'_>) {
         let volume = self.settings.volume;
-        let behind_walls = BehindWalls {
-            now,
-            coverage: &self.coverage,
-            positions: self.places.values(now),
-            gradient_positions: self.places.other_gradients(now),
-        };
+        let behind_walls = BehindWalls { now, coverage: &self.coverage, points: self.places.iteration(now).world };
         let terms = Terms {
             volume,
             own: self.kernel.value(0.0) * volume - 1.0,
@@ -101,12 +95,9 @@ impl Density {
 
     /// Pass 3: displacements, gathered per row, so that momentum is kept with unequal masses too.
     pub(super) fn correct(&mut self, now: Substep<'_>, out: &mut Corrections) {
-        let positions = self.places.pair_gradients(now);
+        let positions = self.places.iteration(now).pairs.gradient;
         let (sums, records) = (&mut self.sums.gradient, &mut self.records);
-        match self.kernel.alternative() {
-            None => passes::correction(now.pairs(), self.kernel.shape(), positions, &self.step, records, sums),
-            Some(other) => passes::correction(now.pairs(), other, positions, &self.step, records, sums),
-        }
+        passes::correction(now.pairs(), self.kernel.shape(), positions, &self.step, records, sums);
         let (sums, steps, walls) = (&self.sums.gradient, &self.step, &self.wall_gradient);
         let (volume, inverse_masses) = (self.settings.volume, now.particles.inverse_masses());
         let rows = now.particles.listed();
@@ -139,7 +130,7 @@ impl Density {
         if out.wall_loads().is_empty() {
             return;
         }
-        let positions = self.places.gradients(now);
+        let positions = self.places.iteration(now).world.gradient;
         let (steps, inverse_masses) = (&self.step, now.particles.inverse_masses());
         for (row, &position) in positions.iter().enumerate() {
             if steps[row] != 0.0 && inverse_masses[row] > 0.0 {
@@ -156,7 +147,7 @@ impl Density {
         let (materials, material_of) = (&self.settings.materials, now.particles.materials());
         self.strength.resize(now.particles.dense(), 0.0);
         now.parallelism.fill(&mut self.strength, |i| materials[usize::from(material_of[i])].repulsion);
-        let positions = self.places.pair_gradients(now);
+        let positions = self.places.iteration(now).pairs.gradient;
         let strengths = Weights::Column(&self.strength);
         passes::repulsion(now.pairs(), reach, positions, strengths, &mut self.sums.gradient);
         let (sums, strength) = (&self.sums.gradient, &self.strength);
@@ -165,70 +156,29 @@ impl Density {
             *displacement += sums[i] * (strength[i] * inverse_masses[i]);
         });
     }
-
-    /// The artificial pressure of Macklin & Müller 2013 (equations 13 and 14): liquids alone.
-    pub(super) fn press_apart(&mut self, now: Substep<'_>, out: &mut Corrections) {
-        let pressure = self.settings.artificial_pressure;
-        if pressure == 0.0 {
-            return;
-        }
-        let (inverse_masses, phases) = (now.particles.inverse_masses(), now.particles.phases());
-        now.parallelism.fill(&mut self.step[..now.particles.listed()], |i| match phases[i] {
-            Phase::Liquid if inverse_masses[i] > 0.0 => 0.5 * pressure / inverse_masses[i],
-            _ => 0.0,
-        });
-        let positions = self.places.pair_gradients(now);
-        let (sums, records) = (&mut self.sums.gradient, &mut self.records);
-        let reference = 0.2 * self.settings.kernel_radius;
-        match self.kernel.alternative() {
-            None => {
-                let shape = Tensile::new(self.kernel.shape(), reference);
-                passes::correction(now.pairs(), shape, positions, &self.step, records, sums);
-            }
-            Some(other) => {
-                let shape = Tensile::new(other, reference);
-                passes::correction(now.pairs(), shape, positions, &self.step, records, sums);
-            }
-        }
-        let (sums, volume) = (&self.sums.gradient, self.settings.volume);
-        now.parallelism.update(&mut out.displacements_mut()[..now.particles.listed()], |i, displacement| {
-            *displacement -= sums[i] * (volume * inverse_masses[i]);
-        });
-    }
 }
 
-impl Density {
+impl<K: Shape> Density<K> {
     /// Density errors at the positions as they are now, by a search of their own: the list may be
     /// made for other positions.
     pub(super) fn measure(&self, now: Substep<'_>) -> Vec<Real> {
-        let particles = now.particles;
-        let mut errors = vec![0.0; particles.len()];
-        match self.kernel.alternative() {
-            None => self.measure_with(self.kernel.shape(), now, &mut errors[..particles.dense()]),
-            Some(shape) => self.measure_with(shape, now, &mut errors[..particles.dense()]),
-        }
-        errors
-    }
-
-    fn measure_with(&self, shape: impl Shape, now: Substep<'_>, errors: &mut [Real]) {
-        let periodic = now.neighbors.periodic();
-        let fine = self.places.settled(now);
-        let fine = fine.as_deref().unwrap_or(now.particles.positions());
-        now.parallelism.chunks(errors, |first, out| {
+        let (periodic, fine) = (now.neighbors.periodic(), &*self.places.measured(now));
+        let mut errors = vec![0.0; now.particles.len()];
+        now.parallelism.chunks(&mut errors[..fine.len()], |first, out| {
             if periodic.any() {
                 let space = Wrapped::new(periodic);
-                near::dispatch(Level::best(), Measured { density: self, shape, now, fine, space, first, out });
+                near::dispatch(Level::best(), Measured { density: self, now, fine, space, first, out });
             } else {
-                near::dispatch(Level::best(), Measured { density: self, shape, now, fine, space: Open, first, out });
+                near::dispatch(Level::best(), Measured { density: self, now, fine, space: Open, first, out });
             }
         });
+        errors
     }
 }
 
 /// Density errors of the rows from `first` on, measured by one task.
 struct Measured<'a, S, K> {
-    density: &'a Density,
-    shape: K,
+    density: &'a Density<K>,
     now: Substep<'a>,
     /// Positions whose differences are exact.
     fine: &'a [Vector],
@@ -240,9 +190,8 @@ struct Measured<'a, S, K> {
 impl<S: Space, K: Shape> Work for Measured<'_, S, K> {
     #[inline(always)]
     fn run<N: Near>(self, near: N) {
-        let Measured { density, shape, now, fine, space, first, out } = self;
-        let particles = now.particles;
-        let fine = &fine[..particles.dense()];
+        let Measured { density, now, fine, space, first, out } = self;
+        let (particles, shape) = (now.particles, density.kernel.shape());
         let scale = density.settings.volume * shape.value_scale();
         for (row, out) in (first..).zip(out) {
             if !particles.phases()[row].is_fluid() {
@@ -265,9 +214,7 @@ impl<S: Space, K: Shape> Work for Measured<'_, S, K> {
 struct BehindWalls<'a> {
     now: Substep<'a>,
     coverage: &'a Coverage,
-    positions: &'a [Vector],
-    /// Where gradients are taken, if not at `positions`.
-    gradient_positions: Option<&'a [Vector]>,
+    points: Points<'a>,
 }
 
 impl BehindWalls<'_> {
@@ -288,8 +235,8 @@ impl BehindWalls<'_> {
                 visit(k, walls.coverage(points[k], coverage));
             }
         };
-        near(&self.positions[rows.clone()], &mut |k, behind| (parts[k], slopes[k]) = behind);
-        if let Some(positions) = self.gradient_positions {
+        near(&self.points.value[rows.clone()], &mut |k, behind| (parts[k], slopes[k]) = behind);
+        if let Some(positions) = self.points.other_gradient() {
             slopes.fill(Vector::ZERO);
             near(&positions[rows], &mut |k, behind| slopes[k] = behind.1);
         }
@@ -366,7 +313,7 @@ impl DensityMaterial {
         let scripted = inverse_mass == 0.0;
         let least = if scripted { 0.0 } else { self.multiplier_min };
         let floor = if scripted { self.scripted_response_min } else { self.response_min };
-        let new = old + stiffness * self.relaxation * error / (larger(response, floor) + self.mixing);
+        let new = old + stiffness * self.relaxation * error / larger(response, floor);
         // What is squeezed in with no way out must not push harder the shorter the substep is.
         let limit = limit * self.mass;
         let new = smaller(larger(larger(new, least), -limit), limit);

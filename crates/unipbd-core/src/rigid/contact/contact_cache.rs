@@ -5,7 +5,7 @@ use crate::rigid::Surface;
 
 /// One point of a contact, as the sweeps see it.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
-pub(super) struct Point {
+pub(crate) struct Point {
     /// Distance of the surfaces at the start of the substep [m].
     pub gap: f64,
     /// Impulses of this substep, the start of the next.
@@ -28,13 +28,13 @@ impl Point {
 
 /// What else belongs to a contact.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
-pub(super) struct ContactCache {
+pub(crate) struct ContactCache {
     pub pair: u32,
     /// The wall touched, or `NONE`.
     pub wall: u32,
     pub surface: Surface,
     /// Which vertices and faces touch at each point.
-    pub features: [FeaturePair; 2],
+    pub(super) features: [FeaturePair; 2],
     /// Normal velocities at the start of the substep [m/s].
     pub approach: [f64; 2],
     /// Impulses of the rebound [kg m/s]; 0 where nothing rebounded.

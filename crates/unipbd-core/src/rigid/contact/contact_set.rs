@@ -32,7 +32,7 @@ pub(super) struct StepContext {
 }
 
 /// The contacts of a substep with what belongs to them, row by row.
-pub(super) type Rows<'a> = (&'a mut [Contact], &'a mut [ContactCache]);
+pub(crate) type Rows<'a> = (&'a mut [Contact], &'a mut [ContactCache]);
 
 impl ContactSet {
     pub fn clear(&mut self) {

@@ -14,7 +14,7 @@ const CHUNK: usize = 1024;
 
 /// Buffers of the sweeps.
 #[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
-pub(super) struct Jacobi {
+pub(crate) struct Jacobi {
     /// Sum of the pushes of the last sweep, by body.
     pub sums: Vec<Twist>,
     pushes: Vec<Push>,

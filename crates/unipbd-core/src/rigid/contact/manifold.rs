@@ -11,7 +11,7 @@ use super::complementarity::{self, Coupling};
 use super::contact_cache::{ContactCache, Point};
 use super::push::Push;
 use crate::math::Vector64;
-use crate::rigid::{InverseMass, Surface, Twist};
+use crate::rigid::{InverseMass, Twist};
 
 /// What stays the same within a substep.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -28,7 +28,7 @@ struct EffectiveMass {
 
 /// One or two points of two bodies with a common normal.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
-pub(super) struct Contact {
+pub(crate) struct Contact {
     pub a: u32,
     /// Second body; `NONE` for a wall.
     pub b: u32,
@@ -44,22 +44,22 @@ pub(super) struct Contact {
 }
 
 /// The body's entry, or nothing for a wall.
-pub(super) fn entry<T: Copy + Default>(column: &[T], body: u32) -> T {
+pub(crate) fn entry<T: Copy + Default>(column: &[T], body: u32) -> T {
     column.get(body as usize).copied().unwrap_or_default()
 }
 
 /// What the normal impulses of an iteration come to.
-struct Pressed {
+pub(crate) struct Pressed {
     /// Displacements of the two bodies before it.
     a: Twist,
     b: Twist,
-    normal: [f64; 2],
+    pub normal: [f64; 2],
     /// How far they turn the two bodies against each other, with the split masses.
     turned: (f64, f64),
 }
 
 impl Pressed {
-    fn total(&self) -> f64 {
+    pub fn total(&self) -> f64 {
         self.normal[0] + self.normal[1]
     }
 }
@@ -81,7 +81,7 @@ impl Contact {
     }
 
     /// Adds a point without impulse; `centers` are those of mass.
-    pub fn add(&mut self, touch: &Touch, centers: (Vector64, Vector64)) {
+    pub(super) fn add(&mut self, touch: &Touch, centers: (Vector64, Vector64)) {
         let (arm_a, arm_b) = (touch.on_a - centers.0, touch.on_b - centers.1);
         let (normal, tangent) = (self.normal, self.tangent());
         self.points[self.count as usize] = Point {
@@ -173,7 +173,7 @@ impl Contact {
         push
     }
 
-    fn add_push(&self, push: &mut Push, point: &Point, normal: f64, tangent: f64) {
+    pub fn add_push(&self, push: &mut Push, point: &Point, normal: f64, tangent: f64) {
         push.linear += self.normal * normal + self.tangent() * tangent;
         push.angular_a += point.normal_a * normal + point.tangent_a * tangent;
         push.angular_b += point.normal_b * normal + point.tangent_b * tangent;
@@ -199,34 +199,13 @@ impl Contact {
             self.add_push(&mut push, &point, normal - old, tangent - point.tangent_impulse);
             (self.points[k].normal_impulse, self.points[k].tangent_impulse) = (normal, tangent);
         }
-        if self.rolling_arm > 0.0 {
-            self.resist_rolling(&pressed, &mut push);
-        }
-        push
-    }
-
-    /// One iteration on the positions alone, as in Macklin et al. 2014: what lies too deep is taken out, and of the
-    /// way the bodies slid past each other what friction holds back for this depth (equations 23 to 25).
-    pub fn solve_positions(&mut self, surface: &Surface, displacements: &[Twist]) -> Push {
-        let Some(pressed) = self.press(displacements, [0.0; 2]) else { return Push::default() };
-        let mut push = Push::default();
-        for k in 0..self.count as usize {
-            let normal = pressed.normal[k];
-            let held = surface.held_back(self.stop(k, &pressed), normal);
-            self.add_push(&mut push, &self.points[k], normal, -held);
-            self.points[k].normal_impulse += normal;
-            self.points[k].tangent_impulse -= held;
-        }
-        if self.rolling_arm > 0.0 && pressed.total() > 0.0 {
-            self.rolling_impulse = 0.0;
-            self.resist_rolling(&pressed, &mut push);
-        }
+        self.resist_rolling(&pressed, &mut push);
         push
     }
 
     /// The normal impulses that leave no approach beyond the gap, in place of the `old` ones; none where
     /// there were none and none are needed.
-    fn press(&self, displacements: &[Twist], old: [f64; 2]) -> Option<Pressed> {
+    pub fn press(&self, displacements: &[Twist], old: [f64; 2]) -> Option<Pressed> {
         let (a, b) = (entry(displacements, self.a), entry(displacements, self.b));
         let mut excess = [0.0; 2];
         for (excess, point) in excess.iter_mut().zip(self.points()) {
@@ -244,7 +223,7 @@ impl Contact {
     }
 
     /// The tangential impulse that ends the sliding at a point, after the normal ones have acted.
-    fn stop(&self, k: usize, pressed: &Pressed) -> f64 {
+    pub fn stop(&self, k: usize, pressed: &Pressed) -> f64 {
         let (point, total) = (&self.points[k], pressed.total());
         if total <= 0.0 {
             return 0.0;
@@ -256,7 +235,10 @@ impl Contact {
     }
 
     /// Rolling resistance, after the other impulses of the contact have turned the bodies.
-    fn resist_rolling(&mut self, pressed: &Pressed, push: &mut Push) {
+    pub fn resist_rolling(&mut self, pressed: &Pressed, push: &mut Push) {
+        if self.rolling_arm == 0.0 {
+            return;
+        }
         let limit = self.rolling_arm * pressed.total();
         let (a, b) = self.effective_mass.turning;
         let turn = pressed.a.angular - pressed.b.angular + push.angular_a * a + push.angular_b * b;

@@ -22,19 +22,25 @@ mod islands;
 mod jacobi;
 mod joint;
 mod manifold;
-mod mass_scaling;
 mod narrow_phase;
 mod pair_contacts;
 mod pairs;
 mod pieces;
 mod push;
 mod settings;
+mod solver;
 mod union_find;
 
-pub use crate::scene::ContactMethod;
 pub use islands::SleepSettings;
 pub use joint::{DistanceRule, Joint, JointKind, Motor};
 pub use settings::{ContactSettings, Depenetration};
+
+pub(crate) use contact_set::Rows;
+pub(crate) use jacobi::Jacobi;
+pub(crate) use manifold::{Contact, entry};
+pub(crate) use push::Push;
+pub(crate) use solver::{ContactSolver, Split};
+pub(crate) use union_find::UnionFind;
 
 use crate::math::Vector64;
 use crate::rigid::Wall;
@@ -42,22 +48,23 @@ use crate::rigid::{Bodies, InverseMass, Twist};
 use contact_cache::ContactCache;
 use contact_set::StepContext;
 use islands::Islands;
-use jacobi::Jacobi;
 use joint::Linked;
-use manifold::{Contact, entry};
 use narrow_phase::NarrowPhase;
 use pieces::NONE;
+use std::sync::Arc;
 
 /// The contacts and joints of all bodies: solver state that lasts from substep to substep.
 #[derive(Clone, serde::Serialize, serde::Deserialize)]
 pub struct Contacts {
     settings: ContactSettings,
+    #[serde(skip, default = "split")]
+    solver: Arc<dyn ContactSolver>,
     narrow_phase: NarrowPhase,
     joints: Vec<Linked>,
     islands: Islands,
     jacobi: Jacobi,
     split: Vec<InverseMass>,
-    /// Responses as contacts see them; empty without mass scaling: then they are those of the bodies.
+    /// Inverse masses as contacts see them; empty where they are those of the bodies.
     scaled: Vec<InverseMass>,
     counts: Vec<u32>,
     corrections: Vec<Twist>,
@@ -93,6 +100,7 @@ impl Contacts {
     pub fn new(walls: &[Wall], settings: ContactSettings) -> Contacts {
         Contacts {
             settings,
+            solver: split(),
             narrow_phase: NarrowPhase::new(walls),
             joints: Vec::new(),
             islands: Islands::default(),
@@ -108,6 +116,16 @@ impl Contacts {
             gravity: 0.0,
             up: Vector64::ZERO,
         }
+    }
+
+    /// The same, solved in another way.
+    pub(crate) fn solved_by(self, solver: Arc<dyn ContactSolver>) -> Contacts {
+        Contacts { solver, ..self }
+    }
+
+    /// Takes over the solver of others: a saved state does not hold it.
+    pub(crate) fn solve_like(&mut self, other: &Contacts) {
+        self.solver = other.solver.clone();
     }
 
     /// Adds a joint; the bodies it links no longer collide with each other. Returns its index.
@@ -134,7 +152,7 @@ impl Contacts {
         self.up = -gravity.normalize_or_zero();
         self.islands.resize(bodies.len());
         self.islands.wake_pushed(bodies);
-        let kept = if self.settings.method == ContactMethod::Split { self.warm_factor } else { 0.0 };
+        let kept = self.solver.kept() * self.warm_factor;
         let moment = StepContext { dt, gravity: self.gravity, kept, slow: 2.0 * self.gravity * dt };
         loop {
             self.narrow_phase.find(bodies, &moment);
@@ -183,15 +201,7 @@ impl Contacts {
             count(b);
         }
         let relaxation = self.settings.relaxation;
-        if self.settings.mass_scaling > 0.0 {
-            mass_scaling::scale(
-                self.narrow_phase.contacts(),
-                bodies,
-                self.up,
-                self.settings.mass_scaling,
-                &mut self.scaled,
-            );
-        }
+        self.solver.scale_masses(self.narrow_phase.contacts(), bodies, self.up, &mut self.scaled);
         self.split.clear();
         self.split.extend(seen(&self.scaled, &bodies.inverse_masses).iter().zip(&self.counts).map(
             |(response, &count)| {
@@ -209,14 +219,7 @@ impl Contacts {
     }
 
     fn sweep(&mut self, bodies: &mut Bodies) {
-        let displacements = &bodies.displacements;
-        let rows = self.narrow_phase.rows();
-        match self.settings.method {
-            ContactMethod::Split => self.jacobi.sweep(rows, bodies.len(), |contact, _| contact.solve(displacements)),
-            ContactMethod::Averaged => self
-                .jacobi
-                .sweep(rows, bodies.len(), |contact, cache| contact.solve_positions(&cache.surface, displacements)),
-        }
+        self.solver.sweep(&mut self.jacobi, self.narrow_phase.rows(), &bodies.displacements);
         for linked in self.joints.iter_mut().filter(|linked| is_movable(linked, bodies)) {
             let pushes = linked.solve(&bodies.displacements);
             add_pair(&mut self.jacobi.sums, linked.bodies(), pushes);
@@ -348,6 +351,10 @@ impl Contacts {
         let square = self.dt * self.dt;
         self.joints.iter().map(move |linked| (linked.joint, linked.force() / square, linked.motor / square))
     }
+}
+
+fn split() -> Arc<dyn ContactSolver> {
+    Arc::new(Split)
 }
 
 fn is_movable(linked: &Linked, bodies: &Bodies) -> bool {

@@ -5,7 +5,7 @@ use crate::rigid::Twist;
 
 /// Equal and opposite pushes on two bodies.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
-pub(super) struct Push {
+pub(crate) struct Push {
     pub linear: Vector64,
     pub angular_a: f64,
     pub angular_b: f64,

@@ -1,16 +1,11 @@
 //! How contacts are solved: what a scene may choose.
 
-use super::{ContactMethod, SleepSettings};
+use super::SleepSettings;
+use crate::scene::ContactDescription;
 
 /// How contacts are solved.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ContactSettings {
-    /// How their pushes are found.
-    pub method: ContactMethod,
-    /// Mass scaling k of Macklin et al. 2014 (equation 21) [1/m]; 0 for none. Contacts see masses m exp(-k h), h
-    /// the height above the lowest support of a heap: upper bodies weigh less on lower ones, and fewer substeps
-    /// carry a heap. Loads of contacts are then those of the scaled masses, and an impact loses momentum.
-    pub mass_scaling: f64,
     /// Contacts that share a body count this much less: over-relaxation of the split Jacobi sweep, below 2.
     /// With an odd number of iterations in a substep warm starting is stable only up to 4/3 (one) or 1.69 (three).
     pub relaxation: f64,
@@ -26,11 +21,10 @@ pub struct ContactSettings {
 
 impl Default for ContactSettings {
     fn default() -> Self {
+        let ContactDescription { relaxation, iterations } = ContactDescription::default();
         ContactSettings {
-            method: ContactMethod::Split,
-            mass_scaling: 0.0,
-            relaxation: 1.8,
-            iterations: 1,
+            relaxation,
+            iterations,
             depenetration: Depenetration::default(),
             restitution_iterations: 6,
             sleep: Some(SleepSettings::default()),

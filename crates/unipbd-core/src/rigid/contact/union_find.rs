@@ -2,7 +2,7 @@
 
 /// Sets of bodies, each named by its lowest member.
 #[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
-pub(super) struct UnionFind {
+pub(crate) struct UnionFind {
     parents: Vec<u32>,
 }
 

@@ -30,16 +30,10 @@ pub(super) fn check(checker: &mut Checker) {
 
 fn check_contacts(checker: &mut Checker) {
     let (contacts, path) = (checker.scene.contacts, KeyPath::key("contacts"));
-    if let Some(relaxation) = contacts.relaxation {
-        let hint = "1 is plain, 2 the most that can be stable";
-        checker.range(path.then("relaxation"), relaxation, Allowed::Between(1.0, 2.0), hint);
-    }
-    if let Some(iterations) = contacts.iterations {
-        let hint = "1 is enough in most scenes; beyond 4, more substeps do more";
-        checker.range(path.then("iterations"), f64::from(iterations), Allowed::Between(1.0, 4.0), hint);
-    }
-    let hint = "in 1/m: with 1, a body a metre up weighs 1/e of itself on the one below; 0 is off";
-    checker.range(path.then("mass_scaling"), contacts.mass_scaling, Allowed::NotNegative, hint);
+    let hint = "1 is plain, 2 the most that can be stable";
+    checker.range(path.then("relaxation"), contacts.relaxation, Allowed::Between(1.0, 2.0), hint);
+    let hint = "1 is enough in most scenes; beyond 4, more substeps do more";
+    checker.range(path.then("iterations"), f64::from(contacts.iterations), Allowed::Between(1.0, 4.0), hint);
 }
 
 /// Exactly one outline, and one that has an area.

@@ -35,7 +35,7 @@ fn obstacles(scene: &Scene) -> Vec<(&'static str, &'static str)> {
         (!scene.rope.is_empty() || !scene.solid.is_empty(), "ropes and solids", OFF),
         (periodic, "periodic domains", OFF),
         (scene.solver.sleep, "sleep", "leave out solver.sleep"),
-        (scene.solver.mass_density.is_some(), "densities weighted with masses", "leave out solver.mass_density"),
+        (scene.legacy.mass_density.is_some(), "densities weighted with masses", "leave out legacy.mass_density"),
     ];
     all.into_iter().filter(|(stands, ..)| *stands).map(|(_, what, instead)| (what, instead)).collect()
 }

@@ -10,6 +10,7 @@ mod environment;
 mod finite;
 mod geometry;
 mod joints;
+mod legacy;
 mod materials;
 mod motion;
 mod names;
@@ -32,6 +33,7 @@ impl Scene {
         let mut checker = Checker::new(self);
         finite::check(&mut checker);
         settings::check(&mut checker);
+        legacy::check(&mut checker);
         coarse::check(&mut checker);
         environment::check(&mut checker);
         materials::check(&mut checker);

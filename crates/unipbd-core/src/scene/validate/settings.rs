@@ -1,7 +1,7 @@
 //! Spacing, time, solver.
 
 use super::checker::{Allowed, Checker, number};
-use crate::scene::{GradientPoint, KeyPath, MassDensityDescription, Substeps};
+use crate::scene::{KeyPath, Substeps};
 
 /// Spacings outside this range leave the reach of single precision in the kernels, which hold h^-4 [m].
 const SPACING: (f64, f64) = (1e-6, 1e6);
@@ -77,16 +77,9 @@ fn check_solver(checker: &mut Checker) {
     let target = solver.target_compression;
     let hint = "a fraction: 0.01 aims at 1 % compression";
     checker.range(path("target_compression"), target, Allowed::Between(1e-6, 0.5), hint);
-    let mixing = solver.constraint_mixing;
-    checker.range(path("constraint_mixing"), mixing, Allowed::Between(0.0, 10.0), "the default is 0");
     if let Some(shifting) = solver.shifting {
         let hint = "leave it out for what is stable; 0 is off";
         checker.range(path("shifting"), shifting, Allowed::Between(0.0, 0.2), hint);
-    }
-    let pressure = solver.artificial_pressure;
-    checker.range(path("artificial_pressure"), pressure, Allowed::Between(0.0, 1.0), "the default is 0");
-    if let Some(description) = &solver.mass_density {
-        check_mass_density(checker, description);
     }
     if solver.sleep && !checker.scene.rope.is_empty() {
         checker.problem(path("sleep"), "does not know ropes yet", "leave it out, or the ropes");
@@ -95,35 +88,6 @@ fn check_solver(checker: &mut Checker) {
         let hint = "leave it out: what is stable follows from the kernel radius";
         if checker.range(path("relaxation"), relaxation, Allowed::Positive, hint) {
             checker.range(path("relaxation"), relaxation, Allowed::Between(0.0, 2.0), hint);
-        }
-    }
-}
-
-fn check_mass_density(checker: &mut Checker, description: &MassDensityDescription) {
-    let solver = &checker.scene.solver;
-    let path = |key| KeyPath::key("solver").then("mass_density").then(key);
-    let least = Allowed::NotNegative;
-    checker.range(path("liquid_mixing"), description.liquid_mixing, least, "the default is 0.01");
-    checker.range(path("gas_mixing"), description.gas_mixing, least, "the default is 0.05");
-    checker.range(path("artificial_pressure"), description.artificial_pressure, least, "the default is 0.1");
-    let part = Allowed::Between(0.0, 0.9);
-    checker.range(path("liquid_reference"), description.liquid_reference, part, "a part of the kernel radius, 0.2");
-    checker.range(path("gas_reference"), description.gas_reference, part, "a part of the kernel radius, 0.25");
-    let key = |key| KeyPath::key("solver").then(key);
-    if solver.gradients.is_some_and(|point| point != GradientPoint::Predicted) {
-        let message = "a density weighted with masses takes its gradients at the predicted positions";
-        checker.problem(key("gradients"), message, "write \"predicted\", or leave it out");
-    }
-    if solver.shifting.is_some() {
-        let message = "has no effect on a density weighted with masses";
-        checker.problem(key("shifting"), message, "leave it out");
-    }
-    for (name, value) in
-        [("constraint_mixing", solver.constraint_mixing), ("artificial_pressure", solver.artificial_pressure)]
-    {
-        if value != 0.0 {
-            let hint = "the keys of solver.mass_density take its place";
-            checker.problem(key(name), "has no effect on a density weighted with masses", hint);
         }
     }
 }

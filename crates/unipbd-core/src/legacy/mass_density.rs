@@ -1,8 +1,9 @@
 //! The density constraint as printed in Macklin & Müller 2013, for comparison: see
 //! [`MassDensityDescription`](crate::scene::MassDensityDescription).
 
-use super::{ConstraintGroup, Corrections, DensityColumns, DensityGroup, Needs, Substep};
+use super::kernels::Formula;
 use crate::bytes::held;
+use crate::constraints::{ConstraintGroup, Corrections, DensityColumns, DensityGroup, Needs, Substep};
 use crate::kernel::Kernel;
 use crate::math::{Real, Vector, real};
 use crate::phase::Phase;
@@ -10,7 +11,7 @@ use crate::scene::{Averaging, MassDensityDescription, MaterialRef, Scene};
 
 /// C_i = rho_i/rho0_i - 1 with rho_i = sum_j m_j W_ij, bodies and walls left out.
 pub struct MassDensity {
-    kernel: Kernel,
+    kernel: Kernel<Formula>,
     averaging: Averaging,
     relaxation: Real,
     materials: Vec<Matter>,
@@ -42,10 +43,9 @@ struct Row {
 }
 
 impl MassDensity {
-    /// The group of a scene that asks for it.
-    pub fn new(scene: &Scene, description: &MassDensityDescription) -> Self {
+    /// The group of a scene that asks for it, with this kernel.
+    pub fn new(scene: &Scene, kernel: Kernel<Formula>, description: &MassDensityDescription) -> Self {
         let radius = scene.solver.kernel_radius * scene.spacing;
-        let kernel = Kernel::of(scene.solver.kernel, radius);
         let matter = |material: MaterialRef<'_>| {
             let (mixing, reference) = match material.phase() {
                 Phase::Liquid => (description.liquid_mixing, description.liquid_reference),

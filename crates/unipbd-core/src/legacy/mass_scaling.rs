@@ -3,15 +3,14 @@
 //! The height h counts from the lowest support of a heap (where it touches what does not move; without such
 //! a place, from its lowest body), so that the factor does not depend on where the heap stands.
 
-use super::manifold::{Contact, entry};
-use super::union_find::UnionFind;
 use crate::math::Vector64;
+use crate::rigid::contact::{Contact, UnionFind, entry};
 use crate::rigid::{Bodies, InverseMass};
 
 /// Masses are scaled by no more than this, or impulses would drown in rounding.
 const LARGEST: f64 = 1e6;
 
-/// Writes the inverse_masses that contacts see, exp(k h) times those of the bodies.
+/// Writes the inverse masses that contacts see, exp(k h) times those of the bodies.
 pub(super) fn scale(contacts: &[Contact], bodies: &Bodies, up: Vector64, k: f64, out: &mut Vec<InverseMass>) {
     let heap = heaps(contacts, bodies);
     let mut support = vec![f64::INFINITY; bodies.len()];

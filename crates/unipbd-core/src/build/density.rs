@@ -1,0 +1,36 @@
+//! The density group of a scene.
+
+use crate::constraints::{ConstraintGroup, Density, DensitySettings};
+use crate::kernel::{Kernel, Shape};
+use crate::legacy::{Formula, LegacyDensity, MassDensity};
+use crate::scene::Scene;
+
+/// A density group, and what the loop needs to know of it.
+pub(super) struct Built {
+    pub group: Box<dyn ConstraintGroup>,
+    /// Pressure over density per multiplier, inverse mass and squared substep, on the lattice at rest.
+    pub pressure_scale: f64,
+}
+
+/// The density group that a scene asks for.
+pub(super) fn of(scene: &Scene) -> Built {
+    if scene.legacy.changes_density() {
+        let kernel = Formula::of(scene);
+        return built(scene, &kernel, |settings| match &scene.legacy.mass_density {
+            Some(description) => Box::new(MassDensity::new(scene, kernel, description)),
+            None => Box::new(LegacyDensity::new(scene, kernel, settings.volume, Density::new(kernel, settings))),
+        });
+    }
+    let kernel = Kernel::new(scene.solver.kernel_radius * scene.spacing);
+    built(scene, &kernel, |settings| Box::new(Density::new(kernel, settings)))
+}
+
+fn built<K: Shape>(
+    scene: &Scene,
+    kernel: &Kernel<K>,
+    group: impl FnOnce(DensitySettings) -> Box<dyn ConstraintGroup>,
+) -> Built {
+    let settings = DensitySettings::new(scene, kernel);
+    let pressure_scale = f64::from(settings.volume) * settings.moment;
+    Built { group: group(settings), pressure_scale }
+}

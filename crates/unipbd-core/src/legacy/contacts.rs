@@ -1,0 +1,76 @@
+//! Contacts of bodies as in Macklin et al. 2014: averaged Jacobi on positions (section 4.2) with the friction of
+//! equations 23 to 25, and mass scaling (equation 21).
+
+use std::sync::Arc;
+
+use super::mass_scaling;
+use crate::math::Vector64;
+use crate::rigid::contact::{Contact, ContactSettings, ContactSolver, Contacts, Jacobi, Push, Rows, Split};
+use crate::rigid::{Bodies, InverseMass, Surface, Twist, Wall};
+use crate::scene::LegacySettings;
+
+/// No contacts yet, between bodies and these walls, solved as `legacy` says.
+pub fn contacts(walls: &[Wall], settings: ContactSettings, legacy: &LegacySettings) -> Contacts {
+    let (k, averaged) = (legacy.mass_scaling, legacy.averaged_contacts);
+    let relaxation = averaged.unwrap_or(settings.relaxation);
+    let contacts = Contacts::new(walls, ContactSettings { relaxation, ..settings });
+    contacts.solved_by(match averaged {
+        Some(_) => Arc::new(MassScaling { k, solver: Averaged }),
+        None => Arc::new(MassScaling { k, solver: Split }),
+    })
+}
+
+/// Averaged Jacobi: nothing lasts from substep to substep.
+struct Averaged;
+
+impl ContactSolver for Averaged {
+    fn kept(&self) -> f64 {
+        0.0
+    }
+
+    fn sweep(&self, jacobi: &mut Jacobi, rows: Rows<'_>, displacements: &[Twist]) {
+        jacobi.sweep(rows, displacements.len(), |contact, cache| project(contact, &cache.surface, displacements));
+    }
+}
+
+/// One iteration on the positions alone: what lies too deep is taken out, and of the way the bodies slid past each
+/// other what friction holds back for this depth.
+fn project(contact: &mut Contact, surface: &Surface, displacements: &[Twist]) -> Push {
+    let mut push = Push::default();
+    let Some(pressed) = contact.press(displacements, [0.0; 2]) else { return push };
+    for k in 0..contact.points().len() {
+        let normal = pressed.normal[k];
+        let held = surface.held_back(contact.stop(k, &pressed), normal);
+        contact.add_push(&mut push, &contact.points()[k], normal, -held);
+        let point = &mut contact.points_mut()[k];
+        point.normal_impulse += normal;
+        point.tangent_impulse -= held;
+    }
+    if pressed.total() > 0.0 {
+        contact.rolling_impulse = 0.0;
+        contact.resist_rolling(&pressed, &mut push);
+    }
+    push
+}
+
+/// Another solver that sees masses m exp(-k h), k in 1/m; 0 for none.
+struct MassScaling<S> {
+    k: f64,
+    solver: S,
+}
+
+impl<S: ContactSolver> ContactSolver for MassScaling<S> {
+    fn kept(&self) -> f64 {
+        self.solver.kept()
+    }
+
+    fn sweep(&self, jacobi: &mut Jacobi, rows: Rows<'_>, displacements: &[Twist]) {
+        self.solver.sweep(jacobi, rows, displacements);
+    }
+
+    fn scale_masses(&self, contacts: &[Contact], bodies: &Bodies, up: Vector64, out: &mut Vec<InverseMass>) {
+        if self.k > 0.0 {
+            mass_scaling::scale(contacts, bodies, up, self.k, out);
+        }
+    }
+}
