@@ -190,3 +190,26 @@ fn the_tables_name_modules_that_exist() {
         assert!(exists(&format!("constraints/{kind}")), "there is no constraint {kind}");
     }
 }
+
+#[test]
+fn the_architecture_page_lists_the_same_layers() {
+    let page = std::fs::read_to_string(repository().join("ARCHITECTURE.md")).expect("the page is there");
+    let rows = page.lines().filter_map(|line| line.strip_prefix("| ")?.split_once(" | "));
+    let numbered = rows.filter(|(number, _)| number.parse::<usize>().is_ok());
+    let listed: Vec<Vec<&str>> = numbered
+        .map(|(_, row)| row.split(" | ").next().unwrap_or_default().split('`').skip(1).step_by(2).collect())
+        .collect();
+    let layers: Vec<Vec<&str>> = LAYERS[..LAYERS.len() - 1].iter().map(|layer| layer.to_vec()).collect();
+    assert_eq!(listed, layers);
+}
+
+#[test]
+fn the_architecture_page_lists_every_stage() {
+    let page = std::fs::read_to_string(repository().join("ARCHITECTURE.md")).expect("the page is there");
+    let stages = code(&core().join("step/pipeline.rs"));
+    let names = stages.split("Stage::").skip(1).filter_map(name).collect::<std::collections::BTreeSet<_>>();
+    assert!(names.len() > 20, "only {} stages were found", names.len());
+    for stage in names {
+        assert!(page.contains(&format!("`{stage}`")), "ARCHITECTURE.md does not name the stage {stage}");
+    }
+}

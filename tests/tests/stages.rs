@@ -5,7 +5,9 @@ use unipbd_core::Stage::{
     KeepOutOfWalls, MoveBodies, PlaceSamples, Predict, Project, RefreshNeighbors, SettleSamples, StoreDensity,
     UpdateVelocities,
 };
-use unipbd_core::math::Vector64;
+use unipbd_core::constraints::{Needs, Substep};
+use unipbd_core::effects::{Changes, Effect};
+use unipbd_core::math::{Vector, Vector64};
 use unipbd_tests::{Prescribed, build, run, scene, shipped};
 
 #[track_caller]
@@ -119,4 +121,36 @@ fn a_group_that_asks_for_a_velocity_pass_gets_its_stage() {
     solver.add_group(Box::new(Prescribed(|_: Vector64| Vector64::ZERO)));
     let stages = [Predict, FindNeighbors, BeginGroups, Project, StoreDensity, UpdateVelocities, FinishGroups];
     assert_eq!(solver.stages(), stages);
+}
+
+/// Adds the same velocity to every listed row in each substep.
+struct Push(Vector);
+
+impl Effect for Push {
+    fn name(&self) -> &'static str {
+        "push"
+    }
+
+    fn needs(&self) -> Needs {
+        Needs::NOTHING
+    }
+
+    fn apply(&mut self, _now: Substep<'_>, out: &mut Changes) {
+        out.velocity.iter_mut().for_each(|change| *change += self.0);
+    }
+}
+
+#[test]
+fn an_effect_from_outside_gets_its_stage_and_acts() {
+    let free = WATER.replacen("[[liquid]]", "gravity = [0.0, 0.0]\n[solver]\nsubsteps = 4\n[[liquid]]", 1);
+    let mut solver = build(&scene(&free), 1);
+    let id = solver.ids()[0];
+    solver.add_effect(Box::new(Push(Vector::new(0.25, 0.0))));
+    assert!(solver.stages().contains(&Effects) && solver.stages().contains(&RefreshNeighbors));
+    run(&mut solver, 1, |_| ());
+    let row = solver.row_of(id).expect("the particle is still there");
+    assert_eq!(solver.ids()[row], id);
+    assert!(solver.row_of(u32::MAX).is_none());
+    let speed = solver.velocities()[row].x;
+    assert!((speed - 1.0).abs() < 1e-3, "four substeps of a quarter, but {speed}");
 }

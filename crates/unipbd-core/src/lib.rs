@@ -1,17 +1,4 @@
-//! A unified 2D particle solver: liquids, gas, smoke and rigid bodies are particles with a phase,
-//! held together by groups of constraints and solved by one position-based loop
-//! (Macklin et al. 2014, "Unified particle physics for real-time applications").
-//!
-//! ```no_run
-//! use unipbd_core::scene::Scene;
-//! # fn scene() -> Scene { Scene::default() }
-//! let mut solver = scene().build(Default::default())?;
-//! while solver.time() < 1.0 {
-//!     let report = solver.step_frame()?;
-//!     println!("{:.3} s: {} substeps", solver.time(), report.substeps);
-//! }
-//! # Ok::<(), Box<dyn std::error::Error>>(())
-//! ```
+#![doc = include_str!("../README.md")]
 
 mod build;
 mod bytes;
@@ -24,9 +11,12 @@ pub mod legacy;
 pub mod math;
 pub mod neighbors;
 pub mod observe;
+#[doc(hidden)]
 pub mod parallel;
 pub mod particles;
+#[doc(hidden)]
 pub mod passes;
+#[doc(hidden)]
 pub mod periodic;
 pub mod phase;
 mod pressure_grid;
@@ -36,6 +26,7 @@ pub mod rng;
 pub mod rows;
 pub mod scene;
 pub mod shapes;
+#[doc(hidden)]
 pub mod simd;
 mod sleep;
 mod sources;

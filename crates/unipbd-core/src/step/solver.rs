@@ -3,6 +3,7 @@ use super::view::SubstepView;
 use super::world::{Parts, World};
 use super::{SolverError, Stage};
 use crate::constraints::ConstraintGroup;
+use crate::effects::Effect;
 
 /// A running simulation. Made by [`Scene::build`](crate::scene::Scene::build).
 ///
@@ -13,8 +14,9 @@ pub struct Solver {
     threads: Threads,
 }
 
-/// What one frame did.
+/// Counts of one frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[non_exhaustive]
 pub struct FrameReport {
     /// Substeps done.
     pub substeps: u32,
@@ -85,10 +87,28 @@ impl Solver {
 
     /// Adds a constraint group behind those of the scene. The stages are planned anew.
     pub fn add_group(&mut self, group: Box<dyn ConstraintGroup>) {
-        // It may move what sleeps.
+        // It may move sleeping liquid.
         self.on_threads(World::wake_for_good);
         self.world.parts.groups.push(group);
         self.world.replan();
+    }
+
+    /// Adds a velocity pass behind those of the scene. The stages are planned anew.
+    ///
+    /// A saved state holds no added effect: add it again after a restore.
+    pub fn add_effect(&mut self, effect: Box<dyn Effect>) {
+        // It may move sleeping liquid.
+        self.on_threads(World::wake_for_good);
+        self.world.parts.effects.push(effect);
+        self.world.replan();
+    }
+
+    /// The row of the particle with this id, if it exists. Rows change from step to step, ids never do.
+    ///
+    /// Takes time proportional to the number of particles; for many lookups go once through
+    /// [`ids`](Solver::ids).
+    pub fn row_of(&self, id: u32) -> Option<usize> {
+        self.ids().iter().position(|&other| other == id)
     }
 
     /// The stages of a substep of this scene, in order.
