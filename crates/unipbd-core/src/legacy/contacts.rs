@@ -11,25 +11,35 @@ use crate::scene::LegacySettings;
 
 /// No contacts yet, between bodies and these walls, solved as `legacy` says.
 pub fn contacts(walls: &[Wall], settings: ContactSettings, legacy: &LegacySettings) -> Contacts {
-    let (k, averaged) = (legacy.mass_scaling, legacy.averaged_contacts);
-    let relaxation = averaged.unwrap_or(settings.relaxation);
-    let contacts = Contacts::new(walls, ContactSettings { relaxation, ..settings });
-    contacts.solved_by(match averaged {
-        Some(_) => Arc::new(MassScaling { k, solver: Averaged }),
-        None => Arc::new(MassScaling { k, solver: Split }),
-    })
+    let relaxation = legacy.averaged_contacts.unwrap_or(settings.relaxation);
+    let solver = LegacyContacts { averaged: legacy.averaged_contacts.is_some(), mass_scaling: legacy.mass_scaling };
+    Contacts::new(walls, ContactSettings { relaxation, ..settings }).solved_by(Arc::new(solver))
 }
 
-/// Averaged Jacobi: nothing lasts from substep to substep.
-struct Averaged;
+struct LegacyContacts {
+    /// Averaged Jacobi in place of split Jacobi: nothing lasts from substep to substep.
+    averaged: bool,
+    /// k of equation 21 [1/m]; 0 for none.
+    mass_scaling: f64,
+}
 
-impl ContactSolver for Averaged {
+impl ContactSolver for LegacyContacts {
     fn kept(&self) -> f64 {
-        0.0
+        if self.averaged { 0.0 } else { Split.kept() }
     }
 
     fn sweep(&self, jacobi: &mut Jacobi, rows: Rows<'_>, displacements: &[Twist]) {
-        jacobi.sweep(rows, displacements.len(), |contact, cache| project(contact, &cache.surface, displacements));
+        if self.averaged {
+            jacobi.sweep(rows, displacements.len(), |contact, cache| project(contact, &cache.surface, displacements));
+        } else {
+            Split.sweep(jacobi, rows, displacements);
+        }
+    }
+
+    fn scale_masses(&self, contacts: &[Contact], bodies: &Bodies, up: Vector64, out: &mut Vec<InverseMass>) {
+        if self.mass_scaling > 0.0 {
+            mass_scaling::scale(contacts, bodies, up, self.mass_scaling, out);
+        }
     }
 }
 
@@ -51,26 +61,4 @@ fn project(contact: &mut Contact, surface: &Surface, displacements: &[Twist]) ->
         contact.resist_rolling(&pressed, &mut push);
     }
     push
-}
-
-/// Another solver that sees masses m exp(-k h), k in 1/m; 0 for none.
-struct MassScaling<S> {
-    k: f64,
-    solver: S,
-}
-
-impl<S: ContactSolver> ContactSolver for MassScaling<S> {
-    fn kept(&self) -> f64 {
-        self.solver.kept()
-    }
-
-    fn sweep(&self, jacobi: &mut Jacobi, rows: Rows<'_>, displacements: &[Twist]) {
-        self.solver.sweep(jacobi, rows, displacements);
-    }
-
-    fn scale_masses(&self, contacts: &[Contact], bodies: &Bodies, up: Vector64, out: &mut Vec<InverseMass>) {
-        if self.k > 0.0 {
-            mass_scaling::scale(contacts, bodies, up, self.k, out);
-        }
-    }
 }

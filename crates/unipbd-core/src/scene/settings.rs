@@ -1,4 +1,4 @@
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 
 use super::Scene;
 
@@ -8,7 +8,7 @@ use super::Scene;
 #[serde(deny_unknown_fields, default)]
 pub struct SolverSettings {
     /// Substeps per frame: `"auto"` or a number.
-    #[cfg_attr(feature = "schema", schemars(with = "SubstepsSchema"))]
+    #[cfg_attr(feature = "schema", schemars(with = "SubstepsKey"))]
     pub substeps: Substeps,
     /// Most substeps per frame that `"auto"` may choose.
     pub max_substeps: u32,
@@ -146,7 +146,8 @@ impl Scene {
 }
 
 /// Substeps per frame.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(from = "SubstepsKey", into = "SubstepsKey")]
 pub enum Substeps {
     /// As many as speed, depth and the target compression ask for.
     #[default]
@@ -155,49 +156,38 @@ pub enum Substeps {
     Fixed(u32),
 }
 
-impl Serialize for Substeps {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        match self {
-            Substeps::Auto => serializer.serialize_str("auto"),
-            Substeps::Fixed(count) => serializer.serialize_u32(*count),
-        }
-    }
-}
-
-impl<'de> Deserialize<'de> for Substeps {
-    fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        #[derive(Deserialize)]
-        #[serde(untagged)]
-        enum Form {
-            Count(u32),
-            Word(String),
-        }
-        match Form::deserialize(deserializer)? {
-            Form::Count(count) => Ok(Substeps::Fixed(count)),
-            Form::Word(word) if word == "auto" => Ok(Substeps::Auto),
-            Form::Word(word) => {
-                Err(serde::de::Error::custom(format!("expected \"auto\" or a whole number, found \"{word}\"")))
-            }
-        }
-    }
-}
-
 /// `"auto"` or a number of substeps per frame.
-#[cfg(feature = "schema")]
-#[derive(schemars::JsonSchema)]
-#[schemars(untagged)]
-#[allow(dead_code)]
-enum SubstepsSchema {
+#[derive(Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(untagged)]
+enum SubstepsKey {
     Word(SubstepsWord),
     Count(u32),
 }
 
-#[cfg(feature = "schema")]
-#[derive(schemars::JsonSchema)]
-#[schemars(rename_all = "lowercase")]
-#[allow(dead_code)]
+#[derive(Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
 enum SubstepsWord {
     Auto,
+}
+
+impl From<SubstepsKey> for Substeps {
+    fn from(key: SubstepsKey) -> Self {
+        match key {
+            SubstepsKey::Word(SubstepsWord::Auto) => Substeps::Auto,
+            SubstepsKey::Count(count) => Substeps::Fixed(count),
+        }
+    }
+}
+
+impl From<Substeps> for SubstepsKey {
+    fn from(substeps: Substeps) -> Self {
+        match substeps {
+            Substeps::Auto => SubstepsKey::Word(SubstepsWord::Auto),
+            Substeps::Fixed(count) => SubstepsKey::Count(count),
+        }
+    }
 }
 
 /// Where the gradient of the density constraint is evaluated.

@@ -27,7 +27,7 @@ fn foreign_bytes_and_other_versions_are_named_as_such() {
     assert_eq!(State::from_bytes(b"PK\x03\x04 not at all").unwrap_err(), StateError::NotAState);
     let mut later = BYTES.clone();
     later[8] = 99;
-    assert_eq!(State::from_bytes(&later).unwrap_err(), StateError::Version { found: 99, expected: 5 });
+    assert_eq!(State::from_bytes(&later).unwrap_err(), StateError::Version { found: 99, expected: 6 });
 }
 
 #[test]
