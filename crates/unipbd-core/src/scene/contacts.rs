@@ -1,5 +1,9 @@
 use serde::{Deserialize, Serialize};
 
+/// Over-relaxation omega of split Jacobi (Tonge et al. 2012) by default, for contacts of rigid bodies and of bodies of
+/// particles. It must lie below 2.
+pub(crate) const OVER_RELAXATION: f64 = 1.8;
+
 /// How contacts of bodies are solved.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -14,7 +18,7 @@ pub struct ContactDescription {
 
 impl Default for ContactDescription {
     fn default() -> Self {
-        ContactDescription { relaxation: 1.8, iterations: 1 }
+        ContactDescription { relaxation: OVER_RELAXATION, iterations: 1 }
     }
 }
 

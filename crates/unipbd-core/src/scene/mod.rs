@@ -26,27 +26,25 @@ mod validate;
 mod walls;
 mod waves;
 
-pub use bodies::{
-    BodyDescription, BodyKind, BodySolver, Copies, Heap, JointDescription, JointRule, MotionDescription, RotationRule,
-    Station,
-};
-pub use checked::CheckedScene;
-pub use contacts::ContactDescription;
-pub use description::{Domain, Environment, Scene, View};
-pub use estimate::{BYTES_PER_PARTICLE, Estimate, SECONDS_PER_PARTICLE_AND_SUBSTEP, SECONDS_WITH_COARSE_PROJECTION};
-pub use expect::{BodyExpectation, Expect, MaterialExpectation};
-pub use legacy::{Averaging, LegacyKernel, LegacySettings, MassDensityDescription};
-pub use materials::{Gas, Liquid, LiquidSurface, MaterialRef, Smoke, Solid};
+pub use bodies::*;
+pub use checked::*;
+pub use contacts::*;
+pub use description::*;
+pub use estimate::*;
+pub use expect::*;
+pub use legacy::*;
+pub use materials::*;
 pub use nearest::nearest;
-pub use points::{PointMotion, Points};
-pub use problem::{KeyPath, KeySegment, Problem, Problems};
-pub use regions::{Heater, Injector, Region, Sink};
-pub use ropes::{Held, Link, Rope, Tethers};
-pub use settings::{GradientPoint, SolverSettings, Substeps};
-pub use sources::{Block, Disc, Emitter, Profile, Sheath, SmokeSource};
-pub use walls::{HalfPlane, Obstacle, Side, Slip, Tank};
-pub use waves::Wave;
+pub use points::*;
+pub use problem::*;
+pub use regions::*;
+pub use ropes::*;
+pub use settings::*;
+pub use sources::*;
+pub use walls::*;
+pub use waves::*;
 
+pub(crate) use contacts::OVER_RELAXATION;
 pub(crate) use layout::{block_points, disc_points};
 pub(crate) use substep_law::{COURANT, SubstepLaw};
 pub(crate) use validate::FARTHEST;

@@ -11,12 +11,14 @@
 /// ```
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let candidates: Vec<&str> = candidates.into_iter().collect();
-    let word = letters(word);
+    let word = word.to_lowercase();
+    let length = word.chars().count();
     let slips = |candidate: &str| {
-        let candidate = letters(candidate);
-        let allowed = (word.len().max(candidate.len()) / 3).max(1);
-        let hopeless = word.len().abs_diff(candidate.len()) > allowed || word.len() == 1 && candidate.len() == 1;
-        (!hopeless).then(|| edit_distance(&word, &candidate)).filter(|&distance| distance <= allowed)
+        let candidate = candidate.to_lowercase();
+        let other = candidate.chars().count();
+        let allowed = (length.max(other) / 3).max(1);
+        let hopeless = length.abs_diff(other) > allowed || length == 1 && other == 1;
+        (!hopeless).then(|| strsim::osa_distance(&word, &candidate)).filter(|&distance| distance <= allowed)
     };
     let scored = candidates.iter().filter_map(|&candidate| Some((slips(candidate)?, candidate)));
     let closest = scored.min_by_key(|&(distance, _)| distance).map(|(_, candidate)| candidate);
@@ -24,53 +26,15 @@ pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
 }
 
 /// The only candidate that begins with `word`, for abbreviations of three letters and more.
-fn only_longer_form<'a>(word: &[char], candidates: &[&'a str]) -> Option<&'a str> {
-    let mut longer = candidates.iter().filter(|candidate| letters(candidate).starts_with(word));
-    let first = longer.next().filter(|_| word.len() >= 3)?;
+fn only_longer_form<'a>(word: &str, candidates: &[&'a str]) -> Option<&'a str> {
+    let mut longer = candidates.iter().filter(|candidate| candidate.to_lowercase().starts_with(word));
+    let first = longer.next().filter(|_| word.chars().count() >= 3)?;
     longer.next().is_none().then_some(first)
-}
-
-fn letters(word: &str) -> Vec<char> {
-    word.chars().flat_map(char::to_lowercase).collect()
-}
-
-/// Optimal string alignment distance: insertions, deletions, replacements, swaps of neighbours.
-fn edit_distance(a: &[char], b: &[char]) -> usize {
-    let mut before_last: Vec<usize> = Vec::new();
-    let mut last: Vec<usize> = (0..=b.len()).collect();
-    for i in 1..=a.len() {
-        let mut row = vec![i];
-        for j in 1..=b.len() {
-            let replaced = last[j - 1] + usize::from(a[i - 1] != b[j - 1]);
-            let mut best = replaced.min(last[j] + 1).min(row[j - 1] + 1);
-            if i > 1 && j > 1 && a[i - 1] == b[j - 2] && a[i - 2] == b[j - 1] {
-                best = best.min(before_last[j - 2] + 1);
-            }
-            row.push(best);
-        }
-        before_last = std::mem::replace(&mut last, row);
-    }
-    last[b.len()]
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    fn distance(a: &str, b: &str) -> usize {
-        edit_distance(&letters(a), &letters(b))
-    }
-
-    #[test]
-    fn distance_counts_each_kind_of_slip_once() {
-        assert_eq!(distance("speed", "speed"), 0);
-        assert_eq!(distance("sped", "speed"), 1);
-        assert_eq!(distance("speeed", "speed"), 1);
-        assert_eq!(distance("spead", "speed"), 1);
-        assert_eq!(distance("psped", "speed"), 2);
-        assert_eq!(distance("psEed", "speed"), 1);
-        assert_eq!(distance("", "abc"), 3);
-    }
 
     #[test]
     fn far_words_are_not_suggested() {

@@ -11,13 +11,12 @@ use crate::constraints::{Corrections, Substep};
 use crate::math::{Vector64, vector, wide};
 use crate::phase::Phase;
 use crate::rigid::Surface;
+use crate::scene::OVER_RELAXATION;
 
 /// Samples with less signed distance than this lie at the surface [spacings].
 const SURFACE: f64 = 0.75;
 /// Part of an old overlap that a round takes out.
 const OLD_PART: f64 = 0.05;
-/// Over-relaxation of the contacts that share a body.
-const RELAXATION: f64 = 1.8;
 
 /// A sample: member and number in it.
 type Sample = (usize, usize);
@@ -185,7 +184,7 @@ impl ShapeMatching {
         let (member, fit) = (&self.members[m], &self.fits[m]);
         let lever = (self.places[m][k] - fit.center).perp_dot(along);
         let whole = member.inverse_mass * (1.0 / self.rows[m].len() as f64 + lever * lever / member.spread);
-        let shares = (f64::from(counts.members[m]) / RELAXATION).max(1.0);
+        let shares = (f64::from(counts.members[m]) / OVER_RELAXATION).max(1.0);
         let alone = member.inverse_mass * f64::from(counts.samples[m][k]);
         let stiff = member.part(f64::from(now.dt));
         stiff * whole * shares + (1.0 - stiff) * alone

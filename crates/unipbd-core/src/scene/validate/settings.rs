@@ -55,39 +55,23 @@ fn check_solver(checker: &mut Checker) {
         checker.range(path("substeps"), f64::from(count), counts, "write a number such as 8, or \"auto\"");
     }
     checker.range(path("max_substeps"), f64::from(solver.max_substeps), counts, "the default is 256");
-    let iterations = f64::from(solver.iterations);
-    checker.range(
-        path("iterations"),
-        iterations,
-        Allowed::Between(1.0, 1000.0),
-        "one is best; raise `substeps` for accuracy",
-    );
-    let tolerance = solver.tolerance;
-    checker.range(path("tolerance"), tolerance, Allowed::NotNegative, "0.01 stops at 1 % compression; 0 never stops");
-    if let Some(settle) = solver.settle_substeps.map(f64::from) {
-        checker.range(
-            path("settle_substeps"),
-            settle,
-            Allowed::Between(0.0, 100_000.0),
-            "leave it out for 100 or more",
-        );
-    }
-    let radius = solver.kernel_radius;
-    checker.range(path("kernel_radius"), radius, Allowed::Between(1.5, 4.0), "in spacings; the default is 3");
-    let target = solver.target_compression;
+    let hint = "one is best; raise `substeps` for accuracy";
+    checker.range(path("iterations"), f64::from(solver.iterations), Allowed::Between(1.0, 1000.0), hint);
+    let hint = "0.01 stops at 1 % compression; 0 never stops";
+    checker.range(path("tolerance"), solver.tolerance, Allowed::NotNegative, hint);
+    let settle = solver.settle_substeps.map(f64::from);
+    checker.range(path("settle_substeps"), settle, Allowed::Between(0.0, 1e5), "leave it out for 100 or more");
+    let hint = "in spacings; the default is 3";
+    checker.range(path("kernel_radius"), solver.kernel_radius, Allowed::Between(1.5, 4.0), hint);
     let hint = "a fraction: 0.01 aims at 1 % compression";
-    checker.range(path("target_compression"), target, Allowed::Between(1e-6, 0.5), hint);
-    if let Some(shifting) = solver.shifting {
-        let hint = "leave it out for what is stable; 0 is off";
-        checker.range(path("shifting"), shifting, Allowed::Between(0.0, 0.2), hint);
-    }
+    checker.range(path("target_compression"), solver.target_compression, Allowed::Between(1e-6, 0.5), hint);
+    let hint = "leave it out for what is stable; 0 is off";
+    checker.range(path("shifting"), solver.shifting, Allowed::Between(0.0, 0.2), hint);
     if solver.sleep && !checker.scene.rope.is_empty() {
         checker.problem(path("sleep"), "does not know ropes yet", "leave it out, or the ropes");
     }
-    if let Some(relaxation) = solver.relaxation {
-        let hint = "leave it out: what is stable follows from the kernel radius";
-        if checker.range(path("relaxation"), relaxation, Allowed::Positive, hint) {
-            checker.range(path("relaxation"), relaxation, Allowed::Between(0.0, 2.0), hint);
-        }
+    let hint = "leave it out: what is stable follows from the kernel radius";
+    if checker.range(path("relaxation"), solver.relaxation, Allowed::Positive, hint) {
+        checker.range(path("relaxation"), solver.relaxation, Allowed::Between(0.0, 2.0), hint);
     }
 }
