@@ -30,7 +30,8 @@ fn table<T: Table>(text: &mut String, title: &str) {
     for quantity in T::QUANTITIES {
         let columns = quantity.columns();
         let columns = if columns == [quantity.name] { String::new() } else { format!("`{}`", columns.join("`, `")) };
-        let _ = writeln!(text, "| `{}` | {} | {} | {columns} |", quantity.name, quantity.unit, quantity.description);
+        let description = quantity.description.replace('|', "\\|");
+        let _ = writeln!(text, "| `{}` | {} | {description} | {columns} |", quantity.name, quantity.unit);
     }
 }
 

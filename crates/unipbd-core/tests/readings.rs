@@ -116,3 +116,18 @@ fn viscosity_that_is_stable_warns_of_nothing() {
     solver.step_frame().expect("it runs");
     assert_eq!(solver.take_events(), []);
 }
+
+#[test]
+fn the_mean_of_c_counts_compression_and_the_mean_of_its_amount_counts_dilation_too() {
+    let mut solver = built(&pool());
+    for _ in 0..10 {
+        solver.step_frame().expect("it runs");
+    }
+    let errors: Vec<f64> = solver.density_errors().iter().map(|error| f64::from(*error)).collect();
+    let mean = |of: fn(f64) -> f64| errors.iter().map(|error| of(*error)).sum::<f64>() / errors.len() as f64;
+    let found = solver.diagnostics();
+    assert!((found.density_error_mean - mean(|error| error.max(0.0))).abs() < 1e-12);
+    assert!((found.density_error_mean_abs - mean(f64::abs)).abs() < 1e-12);
+    assert!(found.density_error_mean_abs > 2.0 * found.density_error_mean, "the surface is dilated: {found:?}");
+    assert_eq!(found.materials[0].density_error_mean_abs, found.density_error_mean_abs);
+}

@@ -39,6 +39,9 @@ table! {
         /// Mean of max(C, 0) over fluid particles: compression alone.
         #[quantity(12, "1")]
         pub density_error_mean: f64,
+        /// Mean of |C| over fluid particles: compression and dilation.
+        #[quantity(31, "1")]
+        pub density_error_mean_abs: f64,
         /// Largest C over fluid particles.
         #[quantity(13, "1")]
         pub density_error_max: f64,
@@ -96,6 +99,9 @@ entries! {
         /// Mean of max(C, 0): compression alone.
         #[quantity(3, "1")]
         pub density_error_mean: f64,
+        /// Mean of |C|: compression and dilation.
+        #[quantity(6, "1")]
+        pub density_error_mean_abs: f64,
         /// Largest C.
         #[quantity(4, "1")]
         pub density_error_max: f64,

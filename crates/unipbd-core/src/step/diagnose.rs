@@ -43,7 +43,10 @@ impl World {
         let materials = self.material_diagnostics();
         let fluids = || materials.iter().zip(&self.parts.materials).filter(|(_, material)| material.phase.is_fluid());
         let fluid_count: u64 = fluids().map(|(diagnostics, _)| diagnostics.count).sum();
-        let weighted: f64 = fluids().map(|(d, _)| d.density_error_mean * d.count as f64).sum();
+        let fluid_mean = |of: fn(&MaterialDiagnostics) -> f64| {
+            let weighted: f64 = fluids().map(|(d, _)| of(d) * d.count as f64).sum();
+            if fluid_count > 0 { weighted / fluid_count as f64 } else { 0.0 }
+        };
         let mut counts = [0; Phase::ALL.len()];
         for (diagnostics, material) in materials.iter().zip(&self.parts.materials) {
             counts[material.phase as usize] += diagnostics.count;
@@ -61,7 +64,8 @@ impl World {
             iterations: self.iterated,
             list_builds: clock.list_builds,
             counts,
-            density_error_mean: if fluid_count > 0 { weighted / fluid_count as f64 } else { 0.0 },
+            density_error_mean: fluid_mean(|d| d.density_error_mean),
+            density_error_mean_abs: fluid_mean(|d| d.density_error_mean_abs),
             density_error_max: fluids().map(|(d, _)| d.density_error_max).fold(0.0, f64::max),
             density_error_min: fluids().map(|(d, _)| d.density_error_min).fold(0.0, f64::min),
             pressure_max: self.pressure_max(),
@@ -160,12 +164,14 @@ impl World {
             of.count += 1;
             if particles.inverse_mass[row] > 0.0 {
                 of.density_error_mean += error.max(0.0);
+                of.density_error_mean_abs += error.abs();
                 of.density_error_max = of.density_error_max.max(error);
                 of.density_error_min = of.density_error_min.min(error);
             }
         }
         for of in &mut all {
             of.density_error_mean /= of.count.max(1) as f64;
+            of.density_error_mean_abs /= of.count.max(1) as f64;
         }
         all
     }
