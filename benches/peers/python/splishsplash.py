@@ -27,7 +27,7 @@ scene = {
     "Configuration": {
         "particleRadius": dx / 2, "sim2D": True, "numberOfStepsPerRenderUpdate": 1, "density0": 1000,
         "simulationMethod": 4 if method == "dfsph" else 2, "gravitation": [0, -9.81, 0], "cflMethod": 0,
-        "timeStepSize": dt, "stopAt": seconds, "pause": False, "boundaryHandlingMethod": 0,
+        "timeStepSize": dt, "stopAt": seconds + look, "pause": False, "boundaryHandlingMethod": 0,
         # Written beside the others, not under the name of the method, limits are ignored in silence.
         name: limits,
     },
@@ -46,7 +46,7 @@ path = os.path.join(folder, "scene.json")
 with open(path, "w") as out:
     json.dump(scene, out)
 base = sph.Exec.SimulatorBase()
-base.init(useGui=False, sceneFile=path, stopAt=seconds, outputDir=folder)
+base.init(useGui=False, sceneFile=path, stopAt=seconds + look, outputDir=folder)
 base.initSimulation()
 
 
@@ -79,22 +79,31 @@ def agrees(asked, found):
 
 
 check_settings()
-looks, state = [], {"time": 0.0, "begin": time.process_time(), "steps": 0, "next": look}
+solver = f"SPlisHSPlasH 2.19 DFSPH {error} %" if method == "dfsph" else "SPlisHSPlasH 2.19 PBF, 5 iterations"
+state = {"time": 0.0, "steps": 0, "next": look, "begin": 0.0}
+
+
+def wait():
+    """Waits for a line: other solvers run in between."""
+    if not sys.stdin.readline():
+        os._exit(0)
+    state["time"], state["steps"], state["begin"] = 0.0, 0, time.process_time()
 
 
 def after_step():
     state["time"] += time.process_time() - state["begin"]
     state["steps"] += 1
-    now = sph.TimeManager.getCurrent().getTime()
-    if now >= state["next"] - 1e-9:
+    if sph.TimeManager.getCurrent().getTime() >= state["next"] - 1e-9:
         state["next"] += look
         model = sph.Simulation.getCurrent().getFluidModel(0)
-        buffer = np.array(model.getFieldBuffer("position"), copy=True)
-        looks.append(buffer[: model.numActiveParticles(), :2].tolist())
+        positions = np.array(model.getFieldBuffer("position"), copy=True)[: model.numActiveParticles(), :2]
+        found = {"time": state["time"], "steps": state["steps"], "positions": positions.tolist()}
+        print(json.dumps(found), flush=True)
+        wait()
     state["begin"] = time.process_time()
 
 
 base.setTimeStepCB(after_step)
+print(json.dumps({"solver": solver}), flush=True)
+wait()
 base.runSimulation()
-solver = "SPlisHSPlasH " + (f"DFSPH {error} %" if method == "dfsph" else "PBF, 5 iterations")
-print(json.dumps({"solver": solver, "time": state["time"], "steps": state["steps"], "looks": looks}))

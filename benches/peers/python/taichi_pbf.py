@@ -58,15 +58,17 @@ pbf.init_particles()
 pbf.run_pbf()
 pbf.init_particles()
 ti.sync()
-looks, spent, steps, now, following = [], 0.0, 0, 0.0, look
-while now < seconds - 1e-9:
-    begin = time.process_time()
-    pbf.run_pbf()
-    ti.sync()
-    spent += time.process_time() - begin
-    now += dt
-    steps += 1
-    if now >= following - 1e-9:
-        following += look
-        looks.append(((pbf.positions.to_numpy() - margin) * unit).tolist())
-print(json.dumps({"solver": "taichi pbf2d", "time": spent, "steps": steps, "looks": looks}))
+print(json.dumps({"solver": "taichi 1.7 pbf2d"}), flush=True)
+now, following = 0.0, look
+for _ in sys.stdin:  # a line for each look: other solvers run in between
+    spent, steps = 0.0, 0
+    while now < following - 1e-9:
+        begin = time.process_time()
+        pbf.run_pbf()
+        ti.sync()
+        spent += time.process_time() - begin
+        now += dt
+        steps += 1
+    following += look
+    positions = ((pbf.positions.to_numpy() - margin) * unit).tolist()
+    print(json.dumps({"time": spent, "steps": steps, "positions": positions}), flush=True)

@@ -7,6 +7,7 @@ mod table;
 mod unipbd;
 
 use cpu_time::ProcessTime;
+use penetration::Penetration;
 
 pub use table::{heap_section, pyramid_section};
 
@@ -101,8 +102,8 @@ pub struct Run {
     pub name: String,
     /// Processor time per frame: mean over the whole run [ms].
     pub milliseconds: f64,
-    /// Deepest overlap of two bodies, or of one and a wall, at the end [m].
-    pub penetration: f64,
+    /// Overlaps at the end.
+    pub penetration: Penetration,
     /// Whether the last body stayed where it was put.
     pub stands: bool,
 }
@@ -143,7 +144,7 @@ impl Timed {
         Ok(Run {
             name: self.engine.name(),
             milliseconds: 1e3 * self.seconds / f64::from(self.frames),
-            penetration: penetration::deepest(setup, &poses),
+            penetration: penetration::measure(setup, &poses),
             stands: self.lean(setup) <= 0.5 * SIZE,
         })
     }

@@ -2,14 +2,28 @@
 
 use super::{Kind, Pose, SIZE, Setup};
 
-/// Deepest overlap of two bodies, or of a body and floor or wall [m]; 0 where nothing overlaps.
+/// Overlap of bodies with each other, floor and walls.
+#[derive(Clone, Copy, Default)]
+pub struct Penetration {
+    /// The deepest of all [m].
+    pub deepest: f64,
+    /// Mean over the bodies of the deepest of each [m]: one pair that is wedged does not decide it.
+    pub mean: f64,
+}
+
+/// Measures the overlaps of all bodies; 0 where nothing overlaps.
 ///
 /// Two boxes overlap by the least shift that parts them: along a normal of a side of one of them, as for any two
 /// convex polygons (separating axes).
-pub fn deepest(setup: &Setup, poses: &[Pose]) -> f64 {
-    let walls = poses.iter().map(|pose| in_walls(setup, pose));
-    let pairs = near_pairs(poses).map(|(a, b)| overlap(setup.kind, &poses[a], &poses[b]));
-    walls.chain(pairs).fold(0.0, f64::max)
+pub fn measure(setup: &Setup, poses: &[Pose]) -> Penetration {
+    let mut depths: Vec<f64> = poses.iter().map(|pose| in_walls(setup, pose).max(0.0)).collect();
+    for (a, b) in near_pairs(poses) {
+        let depth = overlap(setup.kind, &poses[a], &poses[b]);
+        depths[a] = depths[a].max(depth);
+        depths[b] = depths[b].max(depth);
+    }
+    let deepest = depths.iter().copied().fold(0.0, f64::max);
+    Penetration { deepest, mean: depths.iter().sum::<f64>() / poses.len() as f64 }
 }
 
 fn overlap(kind: Kind, a: &Pose, b: &Pose) -> f64 {
@@ -76,7 +90,7 @@ mod tests {
 
     #[track_caller]
     fn overlaps(kind: Kind, poses: &[Pose], depth: f64) {
-        let found = deepest(&setup(kind), poses);
+        let found = measure(&setup(kind), poses).deepest;
         assert!((found - depth).abs() < 1e-9, "{found} for {depth}");
     }
 
@@ -85,6 +99,15 @@ mod tests {
         overlaps(Kind::Boxes, &[at(1.0, 1.0, 0.0), at(1.51, 1.0, 0.0)], 0.0);
         overlaps(Kind::Boxes, &[at(1.0, 1.0, 0.0), at(1.49, 1.2, 0.0)], 0.01);
         overlaps(Kind::Discs, &[at(1.0, 1.0, 0.0), at(1.3, 1.39, 0.0)], 0.5 - 0.3_f64.hypot(0.39));
+    }
+
+    #[test]
+    fn the_mean_is_that_of_each_bodys_deepest_overlap() {
+        let found = measure(
+            &setup(Kind::Boxes),
+            &[at(1.0, 1.0, 0.0), at(1.49, 1.0, 0.0), at(1.97, 1.0, 0.0), at(5.0, 1.0, 0.0)],
+        );
+        assert!((found.mean - 0.0125).abs() < 1e-9 && (found.deepest - 0.02).abs() < 1e-9);
     }
 
     #[test]

@@ -1,6 +1,7 @@
 //! The tables of bodies.
 
 use super::box2d::Tuning;
+use super::penetration::Penetration;
 use super::{Engine, Kind, Run, Setup, alone, box2d, rapier, together, unipbd};
 use crate::options::option;
 
@@ -9,9 +10,11 @@ pub fn heap_section() -> Result<(String, String), String> {
     let count: usize = option("--bodies", "5000").parse().expect("--bodies takes a number");
     let seconds: f64 = option("--settle", "3").parse().expect("--settle takes a number");
     let mut text = String::from(
-        "Overlap is the deepest of any two bodies, or of one and a wall, at the end: by separating axes from the poses of \
-         each engine. unipbd's substeps are those of a frame x iterations of each.\n\n\
-         | bodies | engine | processor time per frame [ms] | over the first row | deepest overlap [mm] |\n|---|---|---|---|---|\n",
+        "Overlap is that of two bodies, or of one and a wall, at the end: by separating axes from the poses of each engine; \
+         the mean is that of each body's deepest. unipbd's substeps are those of a frame x iterations of each. Box2D's \
+         slop is set by its unit of length, with which its speculative margin shrinks too.\n\n\
+         | bodies | engine | processor time per frame [ms] | over the first row | deepest overlap [mm] | mean [mm] |\n\
+         |---|---|---|---|---|---|\n",
     );
     for kind in [Kind::Discs, Kind::Boxes] {
         let setup = Setup::heap(kind, count);
@@ -26,14 +29,19 @@ pub fn heap_section() -> Result<(String, String), String> {
         let first = runs[0].milliseconds;
         for Run { name, milliseconds, penetration, .. } in runs {
             text += &format!(
-                "| {} | {name} | {milliseconds:.2} | {:.2} | {:.1} |\n",
+                "| {} | {name} | {milliseconds:.2} | {:.2} | {} |\n",
                 kind.name(),
                 milliseconds / first,
-                1e3 * penetration
+                depths(penetration)
             );
         }
     }
     Ok((format!("{count} bodies of 0.5 m settle, {seconds} s"), text))
+}
+
+/// Two cells of a row [mm].
+fn depths(of: Penetration) -> String {
+    format!("{:.1} | {:.2}", 1e3 * of.deepest, 1e3 * of.mean)
 }
 
 /// unipbd's substeps and iterations, such as `4x1,3x2`.
@@ -51,11 +59,11 @@ pub fn pyramid_section() -> Result<(String, String), String> {
     let setup = Setup::pyramid(rows);
     let mut text = String::from(
         "It stands where its top stays within half a box of its place; a run ends where it does not. Overlap as above.\n\n\
-         | engine | stands | processor time per frame [ms] | deepest overlap [mm] |\n|---|---|---|---|\n",
+         | engine | stands | processor time per frame [ms] | deepest overlap [mm] | mean [mm] |\n|---|---|---|---|---|\n",
     );
     let mut row = |run: &Run| {
         let stands = if run.stands { "yes" } else { "no" };
-        text += &format!("| {} | {stands} | {:.1} | {:.1} |\n", run.name, run.milliseconds, 1e3 * run.penetration);
+        text += &format!("| {} | {stands} | {:.1} | {} |\n", run.name, run.milliseconds, depths(run.penetration));
     };
     let mine = |substeps: u32| unipbd::engine(&setup, (substeps, 1));
     let rapier = |substeps: u32| rapier::engine(&setup, substeps);

@@ -60,6 +60,7 @@ impl Case {
 }
 
 /// What a run of one solver gave.
+#[derive(Default)]
 pub struct Outcome {
     pub solver: String,
     /// Processor time of the steps alone [s]: on one thread the wall-clock time of a machine that does nothing else.
@@ -80,31 +81,48 @@ impl Outcome {
 }
 
 /// A solver that holds a case.
-trait Runs {
-    /// Advances by its step, whose length it returns [s].
-    fn step(&mut self) -> f64;
+trait Solver {
+    /// Its name and settings.
+    fn name(&self) -> String;
+    /// Advances to this time.
+    fn advance(&mut self, until: f64) -> Result<Spent, String>;
     fn positions(&self) -> Vec<[f64; 2]>;
 }
 
-/// Runs a case to its end. Only the steps are timed.
-fn run(case: &Case, solver: String, runs: &mut impl Runs) -> Outcome {
-    let mut outcome = Outcome { solver, time: 0.0, steps: 0, errors: Errors::default(), height: 0.0 };
-    let (mut time, mut next) = (0.0, LOOK);
-    while time < case.seconds - 1e-9 {
-        let begin = ProcessTime::now();
-        let dt = runs.step();
-        outcome.time += begin.elapsed().as_secs_f64();
-        outcome.steps += 1;
-        time += dt;
-        if time >= next - 1e-9 {
-            next += LOOK;
-            outcome.errors = outcome.errors.and(case.errors(&runs.positions()));
-        }
-    }
-    outcome.height = mean_height(&runs.positions());
-    outcome
+/// What an advance took.
+#[derive(Clone, Copy, Default)]
+struct Spent {
+    /// Processor time [s].
+    time: f64,
+    steps: u64,
 }
 
-fn mean_height(positions: &[[f64; 2]]) -> f64 {
-    positions.iter().map(|x| x[1]).sum::<f64>() / positions.len() as f64
+impl Spent {
+    /// Takes steps of the length that `step` returns from one time to another; only they are timed.
+    fn by(now: &mut f64, until: f64, mut step: impl FnMut() -> f64) -> Spent {
+        let mut spent = Spent::default();
+        while *now < until - 1e-9 {
+            let begin = ProcessTime::now();
+            *now += step();
+            spent = Spent { time: spent.time + begin.elapsed().as_secs_f64(), steps: spent.steps + 1 };
+        }
+        spent
+    }
+}
+
+/// Runs a case to its end by all solvers in turn, from look to look: a slow moment of the machine hits all of them.
+fn race(case: &Case, solvers: &mut [Box<dyn Solver>]) -> Result<Vec<Outcome>, String> {
+    let start = |solver: &Box<dyn Solver>| Outcome { solver: solver.name(), ..Outcome::default() };
+    let mut outcomes: Vec<Outcome> = solvers.iter().map(start).collect();
+    for look in 1..=(case.seconds / LOOK).round() as u32 {
+        for (solver, outcome) in solvers.iter_mut().zip(&mut outcomes) {
+            let spent = solver.advance(LOOK * f64::from(look))?;
+            let positions = solver.positions();
+            outcome.time += spent.time;
+            outcome.steps += spent.steps;
+            outcome.errors = outcome.errors.and(case.errors(&positions));
+            outcome.height = positions.iter().map(|x| x[1]).sum::<f64>() / positions.len() as f64;
+        }
+    }
+    Ok(outcomes)
 }

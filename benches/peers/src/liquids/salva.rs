@@ -6,13 +6,15 @@ use salva2d::object::interaction_groups::InteractionGroups;
 use salva2d::object::{Boundary, Fluid, FluidHandle};
 use salva2d::solver::{DFSPHSolver, DfsphParameters};
 
-use super::{Case, GRAVITY, Outcome, Runs, run};
+use super::{Case, GRAVITY, Solver, Spent};
 use crate::readback::ReadBack;
 
 struct Salva {
     world: LiquidWorld,
     fluid: FluidHandle,
-    dt: f32,
+    error: f64,
+    dt: f64,
+    now: f64,
 }
 
 impl Salva {
@@ -35,18 +37,26 @@ impl Salva {
     }
 }
 
-impl Runs for Salva {
-    fn step(&mut self) -> f64 {
-        self.world.step(self.dt, &Vector2::new(0.0, -GRAVITY as f32));
-        f64::from(self.dt)
+impl Solver for Salva {
+    fn name(&self) -> String {
+        format!("salva2d 0.11 DFSPH {} %", 100.0 * self.error)
     }
+
+    fn advance(&mut self, until: f64) -> Result<Spent, String> {
+        let (world, dt) = (&mut self.world, self.dt);
+        Ok(Spent::by(&mut self.now, until, || {
+            world.step(dt as f32, &Vector2::new(0.0, -GRAVITY as f32));
+            dt
+        }))
+    }
+
     fn positions(&self) -> Vec<[f64; 2]> {
         self.fluid().positions.iter().map(|x| [f64::from(x.x), f64::from(x.y)]).collect()
     }
 }
 
 /// salva2d's DFSPH with this largest density error, a fraction, and two layers of wall particles.
-pub fn salva(case: &Case, error: f64) -> Result<Outcome, String> {
+pub fn salva(case: &Case, error: f64) -> Result<Box<dyn Solver>, String> {
     let parameters = DfsphParameters { max_density_error: error as f32, ..DfsphParameters::default() };
     let solver: DFSPHSolver = DFSPHSolver::with_parameters(parameters);
     // Its particle volume is 0.8 (2 r)^2: that of the lattice.
@@ -57,9 +67,9 @@ pub fn salva(case: &Case, error: f64) -> Result<Outcome, String> {
     let fluid = world.add_fluid(Fluid::new(places, radius, 1000.0, InteractionGroups::all()));
     let walls = walls(case).into_iter().map(vector).collect();
     world.add_boundary(Boundary::new(walls, InteractionGroups::all()));
-    let mut salva = Salva { world, fluid, dt: case.step() as f32 };
+    let salva = Salva { world, fluid, error, dt: case.step(), now: 0.0 };
     salva.check(case, parameters, radius)?;
-    Ok(run(case, format!("salva2d 0.11 DFSPH {} %", 100.0 * error), &mut salva))
+    Ok(Box::new(salva))
 }
 
 /// Two layers of particles around the tank, open at the top.

@@ -1,7 +1,9 @@
 //! The tables of liquids.
 
+use super::python::python;
+use super::salva::salva;
 use super::unipbd::{Setting, unipbd};
-use super::{Case, Outcome, python, salva};
+use super::{Case, Outcome, Solver, race};
 use crate::chart;
 use crate::options::option;
 
@@ -46,12 +48,21 @@ fn capital(name: &str) -> String {
 
 /// Every peer on a case, and the quickest unipbd whose density error is no larger.
 fn section(case: &Case, bars: &mut Vec<(String, f64)>) -> Result<String, String> {
-    let (ours, (peers, notes)) = (ours(case)?, peers(case)?);
+    let settings = settings();
+    let ours = race(case, &mut build(case, &settings)?)?;
+    let is_best = |of: &Outcome| !ours.iter().any(|other| of.is_beaten_by(other));
+    let best: Vec<Setting> =
+        settings.into_iter().zip(&ours).filter(|(_, of)| is_best(of)).map(|(set, _)| set).collect();
     let mut text = HEAD.to_owned();
-    let best = ours.iter().filter(|of| !ours.iter().any(|other| of.is_beaten_by(other)));
-    best.for_each(|of| text += &row(case, of, " | "));
-    for peer in &peers {
-        let good = ours.iter().filter(|of| of.errors.mean() <= peer.errors.mean());
+    ours.iter().filter(|of| is_best(of)).for_each(|of| text += &row(case, of, " | "));
+    let mut peers = Vec::new();
+    for start in asked_for() {
+        // Once more with each peer: so that both are timed in the same moments.
+        let mut solvers = build(case, &best)?;
+        solvers.push(start(case)?);
+        let mut outcomes = race(case, &mut solvers)?;
+        let peer = outcomes.pop().expect("the peer was raced");
+        let good = outcomes.iter().filter(|of| of.errors.mean() <= peer.errors.mean());
         let end = match good.min_by(|a, b| a.time.total_cmp(&b.time)) {
             Some(of) => {
                 let ratio = peer.time / of.time;
@@ -60,10 +71,10 @@ fn section(case: &Case, bars: &mut Vec<(String, f64)>) -> Result<String, String>
             }
             None => "none | -".to_owned(),
         };
-        text += &row(case, peer, &end);
+        text += &row(case, &peer, &end);
+        peers.push(peer);
     }
     draw(case, &ours, &peers)?;
-    notes.iter().for_each(|note| text += &format!("\n- {note}"));
     Ok(text)
 }
 
@@ -74,36 +85,35 @@ fn row(case: &Case, of: &Outcome, end: &str) -> String {
     format!("| {solver} | {:.3} | {steps} | {errors} | {height:.4} | {end} |\n", of.time / case.seconds)
 }
 
-/// unipbd by all settings.
-fn ours(case: &Case) -> Result<Vec<Outcome>, String> {
+/// unipbd's settings.
+fn settings() -> Vec<Setting> {
     let radii = option("--radius", "3,2");
     let radii = radii.split(',').map(|radius| radius.parse::<f64>().expect("--radius takes numbers"));
     let coarse = option("--coarse", "no,yes");
     let coarse: Vec<bool> = coarse.split(',').map(|word| word == "yes").collect();
     let with = |radius: f64, target: f64| coarse.iter().map(move |&coarse| Setting { radius, target, coarse });
-    let settings = radii.flat_map(|radius| TARGETS.into_iter().flat_map(move |target| with(radius, target)));
-    settings.map(|setting| unipbd(case, setting)).collect()
+    radii.flat_map(|radius| TARGETS.into_iter().flat_map(move |target| with(radius, target))).collect()
 }
 
-/// The peers that were asked for, and a note on each of the others. One that breaks is an error.
-fn peers(case: &Case) -> Result<(Vec<Outcome>, Vec<String>), String> {
-    let asked = option("--peers", "dfsph,salva,taichi");
-    let asked = |name: &str| asked.split(',').any(|peer| peer == name);
-    let (mut peers, mut notes) = (Vec::new(), Vec::new());
-    let mut add = |name: &str, what: &str, runs: &mut dyn FnMut() -> Result<Vec<Outcome>, String>| {
-        if asked(name) {
-            peers.extend(runs()?);
-        } else {
-            notes.push(format!("{what}: not asked for (`--peers {name}`)."));
+fn build(case: &Case, settings: &[Setting]) -> Result<Vec<Box<dyn Solver>>, String> {
+    settings.iter().map(|&setting| unipbd(case, setting)).collect()
+}
+
+type Start = Box<dyn Fn(&Case) -> Result<Box<dyn Solver>, String>>;
+
+/// The peers of `--peers`, each to be started when it is its turn.
+fn asked_for() -> Vec<Start> {
+    let splish = |setting: String| -> Start { Box::new(move |case| python(case, "splishsplash.py", &setting)) };
+    let peers = |name: &str| -> Vec<Start> {
+        match name {
+            "dfsph" => DFSPH.iter().map(|error| splish(format!("dfsph:{error}"))).collect(),
+            "salva" => SALVA.iter().map(|&error| -> Start { Box::new(move |case| salva(case, error)) }).collect(),
+            "taichi" => vec![Box::new(|case| python(case, "taichi_pbf.py", "1"))],
+            "pbf" => vec![splish("pbf".to_owned())],
+            _ => panic!("there is no peer {name}: --peers takes dfsph, salva, taichi and pbf"),
         }
-        Ok::<(), String>(())
     };
-    let splish = |setting: String| python::peer(case, "splishsplash.py", &setting);
-    add("dfsph", "SPlisHSPlasH's DFSPH", &mut || DFSPH.iter().map(|error| splish(format!("dfsph:{error}"))).collect())?;
-    add("salva", "salva2d", &mut || SALVA.iter().map(|&error| salva::salva(case, error)).collect())?;
-    add("taichi", "taichi's pbf2d", &mut || Ok(vec![python::peer(case, "taichi_pbf.py", "1")?]))?;
-    add("pbf", "SPlisHSPlasH's PBF", &mut || Ok(vec![splish("pbf".to_owned())?]))?;
-    Ok((peers, notes))
+    option("--peers", "dfsph,salva,taichi").split(',').flat_map(peers).collect()
 }
 
 /// All solvers on one picture.

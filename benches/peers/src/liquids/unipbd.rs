@@ -1,23 +1,35 @@
 //! unipbd on the cases of [`Case`].
 
+use unipbd_core::BuildOptions;
 use unipbd_core::scene::{Block, Liquid, Scene, SolverSettings, Tank};
-use unipbd_core::{BuildOptions, Solver};
 
-use super::{Case, GRAVITY, Outcome, Runs, run};
+use super::{Case, GRAVITY, Solver, Spent};
 use crate::readback::ReadBack;
 
 /// Frames per second.
 const FPS: f64 = 60.0;
 
-struct Unipbd(Solver);
+struct Unipbd {
+    solver: unipbd_core::Solver,
+    setting: Setting,
+    now: f64,
+}
 
-impl Runs for Unipbd {
-    fn step(&mut self) -> f64 {
-        self.0.step_frame().expect("the case does not diverge");
-        self.0.frame_time()
+impl Solver for Unipbd {
+    fn name(&self) -> String {
+        self.setting.name()
     }
+
+    fn advance(&mut self, until: f64) -> Result<Spent, String> {
+        let solver = &mut self.solver;
+        Ok(Spent::by(&mut self.now, until, || {
+            solver.step_frame().expect("the case does not diverge");
+            solver.frame_time()
+        }))
+    }
+
     fn positions(&self) -> Vec<[f64; 2]> {
-        self.0.positions().iter().map(|x| [f64::from(x.x), f64::from(x.y)]).collect()
+        self.solver.positions().iter().map(|x| [f64::from(x.x), f64::from(x.y)]).collect()
     }
 }
 
@@ -33,14 +45,14 @@ pub struct Setting {
 }
 
 impl Setting {
-    fn name(self) -> String {
+    pub fn name(self) -> String {
         let name = if self.coarse { "unipbd, coarse projection" } else { "unipbd" };
         format!("{name}, h = {} dx, target {} %", self.radius, 100.0 * self.target)
     }
 }
 
 /// unipbd with a setting, on one thread.
-pub fn unipbd(case: &Case, setting: Setting) -> Result<Outcome, String> {
+pub fn unipbd(case: &Case, setting: Setting) -> Result<Box<dyn Solver>, String> {
     let Setting { radius, target, coarse } = setting;
     let solver = SolverSettings { kernel_radius: radius, target_compression: target, ..SolverSettings::default() };
     let scene = Scene {
@@ -61,5 +73,5 @@ pub fn unipbd(case: &Case, setting: Setting) -> Result<Outcome, String> {
         .same("particles", case.lattice().len(), solver.positions().len())
         .same("threads", 1, solver.threads())
         .done()?;
-    Ok(run(case, setting.name(), &mut Unipbd(solver)))
+    Ok(Box::new(Unipbd { solver, setting, now: 0.0 }))
 }
