@@ -25,7 +25,7 @@ pub enum Stage {
     /// Constraint groups prepare for the substep.
     BeginGroups,
     /// Constraint groups move particles, one after the other, each from one state; after each of them
-    /// the steps of [`CorrectionStep`] run.
+    /// their corrections are applied.
     Project,
     /// Without groups: keeps particles out of walls, by the same steps.
     KeepOutOfWalls,
