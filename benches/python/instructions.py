@@ -181,6 +181,8 @@ def main() -> int:
     unknown = set(arguments.scenes) - set(SCENES)
     if unknown or (arguments.write and arguments.scenes):
         parser.error(f"there is no scene {', '.join(unknown)}" if unknown else "--write takes all scenes")
+    if arguments.check and not TABLE.exists():
+        parser.error(f"there is no {TABLE.relative_to(ROOT)} to compare with: make it by --write")
     if not shutil.which("valgrind"):
         print("valgrind is not installed", file=sys.stderr)
         return 2
