@@ -1,4 +1,4 @@
-//! What kind of matter a particle is, and which material it belongs to.
+//! The phase of a particle, and the index of its material.
 
 /// The kind of matter a particle stands for. It decides which constraints see the particle.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -1,4 +1,4 @@
-//! Bodies, joints and walls of a scene as the contact solver takes them.
+//! Bodies, joints and walls of a scene in the form that the contact solver takes.
 
 use super::carve::Solid;
 use crate::legacy;
@@ -68,7 +68,7 @@ fn specification(description: &BodyDescription, name: String, position: Vector64
         name,
         kind: description.kind,
         shape: match (description.solver, description.radius) {
-            // The outline of what deforms is drawn as it is bent.
+            // The outline of a deformable body is drawn as it is bent.
             (BodySolver::ShapeMatching, Some(radius)) => Shape::regular(ROUND, radius),
             _ => description.shape(),
         },
@@ -152,7 +152,7 @@ fn joint(description: &JointDescription, bodies: &Bodies) -> Option<Joint> {
     })
 }
 
-/// What keeps a body at the end of a rope from going farther than its length from the held end.
+/// The distance joint that keeps a body at the end of a rope within the rope's length of the held end.
 fn rope_joint(rope: &Rope, spacing: f64, bodies: &Bodies) -> Option<Joint> {
     let name = rope.body.as_ref().filter(|_| rope.held.first())?;
     let body = bodies.views().iter().position(|body| body.name == *name)? as u32;

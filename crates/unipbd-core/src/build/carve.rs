@@ -1,4 +1,4 @@
-//! Room for bodies: what fills a scene at the start stays outside of them.
+//! Room for bodies: the initial fill of a scene stays outside of them.
 
 use crate::math::Vector64;
 use crate::rigid::Pose;

@@ -5,7 +5,7 @@ use crate::kernel::{Kernel, Shape};
 use crate::legacy::{Formula, LegacyDensity, MassDensity};
 use crate::scene::Scene;
 
-/// A density group, and what the loop needs to know of it.
+/// A density group, and the scale of its pressure for the loop.
 pub(super) struct Built {
     pub group: Box<dyn ConstraintGroup>,
     /// Pressure over density per multiplier, inverse mass and squared substep, on the lattice at rest.

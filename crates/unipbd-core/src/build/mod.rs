@@ -27,7 +27,7 @@ use crate::sources::{EmitterSystem, RemovalRules};
 use crate::step::{BodyForce, Parts, Solver, SubstepRule};
 use crate::walls::Walls;
 
-/// Skin, in spacings, that covers what the projection moves, so that velocity passes find their pairs.
+/// Skin, in spacings, that covers the moves of the projection, so that velocity passes find their pairs.
 const LEAST_SKIN: f64 = 0.05;
 /// Streams of random numbers, far apart for different purposes.
 const BLOCK_STREAM: u64 = 1 << 32;
@@ -137,7 +137,7 @@ fn groups(
     rigid: Option<&RigidBodies>,
 ) -> Vec<Box<dyn ConstraintGroup>> {
     let mut groups: Vec<Box<dyn ConstraintGroup>> = Vec::new();
-    // A force: before what holds against it.
+    // A force is applied before the constraints that act against it.
     if let Some(adhesion) = Adhesion::new(scene) {
         groups.push(Box::new(adhesion));
     }
@@ -223,7 +223,7 @@ fn rigid_bodies(scene: &Scene, particles: &mut Particles) -> Option<RigidBodies>
     Some(RigidBodies::new(bodies, contacts, first_sample, scene.spacing))
 }
 
-/// What the start of a scene is filled with.
+/// The initial particles of a scene.
 struct Filling<'a> {
     material: &'a str,
     points: Vec<Vector64>,

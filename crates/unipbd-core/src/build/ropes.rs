@@ -1,4 +1,4 @@
-//! Ropes: rows of points, and what ties them.
+//! Ropes: rows of points, and the constraints between them.
 
 use crate::constraints::{Batch, ConstraintGroup, Distance, Tether};
 use crate::math::{Vector64, real, vector};
@@ -62,7 +62,7 @@ impl Ropes {
         }
     }
 
-    /// What ties the points.
+    /// The constraints between the points.
     pub fn groups(self) -> Vec<Box<dyn ConstraintGroup>> {
         let mut groups: Vec<Box<dyn ConstraintGroup>> = Vec::new();
         if !self.distances.is_empty() {

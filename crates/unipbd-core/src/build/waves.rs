@@ -40,7 +40,7 @@ impl<'a> Waves<'a> {
         block_points(&taller, spacing).into_iter().filter(inside).collect()
     }
 
-    /// The height from which the waves lift what is at a point now [m].
+    /// The height from which the waves lift the fluid that is at a point now [m].
     fn rest_height(&self, x: Vector64) -> f64 {
         let lifted = |y: f64| self.0.iter().map(|(wave, phase)| lift(wave, *phase, x.x, y)).sum::<f64>();
         (0..STEPS).fold(x.y, |y, _| x.y - lifted(y))

@@ -26,7 +26,7 @@ pub struct Adhesion {
 const WALL_SCALE: f64 = 3.0 * std::f64::consts::PI / 14.0;
 
 impl Adhesion {
-    /// The adhesion of a scene, or nothing where no liquid has any.
+    /// The adhesion of a scene; `None` where no liquid has any.
     pub fn new(scene: &Scene) -> Option<Self> {
         let radius = scene.solver.kernel_radius * scene.spacing;
         let of = |material: MaterialRef<'_>| match material {

@@ -49,7 +49,7 @@ impl<C: Constraint<N>, const N: usize> Batch<C, N> {
         }
     }
 
-    /// Sets the over-relaxation, 1 to 2 (default 1): the masses are split by so much less.
+    /// Sets the over-relaxation, 1 to 2 (default 1): the number of mass shares of a particle is divided by it.
     #[must_use]
     pub fn with_relaxation(mut self, relaxation: f64) -> Self {
         self.relaxation = real(relaxation);

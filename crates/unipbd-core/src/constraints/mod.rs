@@ -1,6 +1,6 @@
-//! Constraint groups: what holds particles together.
+//! Constraint groups: the constraints between particles.
 //!
-//! A group solves all its constraints from one state and adds what it wants to move to
+//! A group solves all its constraints from one state and adds the displacements of rows to
 //! [`Corrections`]; the loop applies them and goes on to the next group. Groups are open: implement
 //! [`ConstraintGroup`] anywhere and hand it to [`Solver::add_group`](crate::Solver::add_group), or
 //! implement [`Constraint`] and let [`Batch`] do the rest.
@@ -31,7 +31,7 @@ use crate::passes::Pairs;
 use crate::rows::RowIndex;
 use crate::walls::Walls;
 
-/// What a group needs from the loop; what nobody needs is not computed.
+/// The data that a group needs from the loop; data that no group needs is not computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Needs(u8);
 
@@ -130,7 +130,7 @@ pub trait ConstraintGroup: Send + Sync {
         Vec::new()
     }
 
-    /// Takes back what [`save`](Self::save) gave.
+    /// Restores the state that [`save`](Self::save) returned.
     fn restore(&mut self, saved: &[u64]) {
         let _ = saved;
     }

@@ -43,7 +43,7 @@ struct Tied {
 
 impl RigidBodies {
     /// Bodies whose samples have consecutive ids from `first_sample`, body by body.
-    /// Without a fluid nobody sees the samples: then there are none.
+    /// Without a fluid the samples have no use: then there are none.
     pub(crate) fn new(bodies: Bodies, contacts: Contacts, first_sample: Option<u32>, spacing: f64) -> Self {
         let mut next = first_sample.unwrap_or(0);
         let mut first = vec![next];
@@ -175,7 +175,7 @@ impl RigidBodies {
         }
     }
 
-    /// Visits the samples and what is tied to bodies.
+    /// Visits the samples and the particles tied to bodies.
     fn each_follower(&self, rows: &RowIndex, mut visit: impl FnMut(u32, Vector64, usize)) {
         self.each_sample(rows, |body, place, row| {
             if self.bodies.elasticity(body as usize).is_none() {
@@ -199,7 +199,7 @@ impl RigidBodies {
         particles.asleep() > 0 && self.first_row(body, rows).is_some_and(|row| row >= particles.awake())
     }
 
-    /// Whether the sample of this id may sleep: its body is not moved by a script.
+    /// Whether the sample of this id may sleep: its body is not kinematic.
     pub(crate) fn may_rest(&self, id: u32) -> bool {
         let body = self.first_sample.partition_point(|&first| first <= id) - 1;
         let matched = self.bodies.elasticity(body).is_some();
@@ -209,7 +209,7 @@ impl RigidBodies {
     /// Visits the sleeping samples of bodies that are awake.
     pub(crate) fn each_sample_left_asleep(&self, particles: &Particles, rows: &RowIndex, mut visit: impl FnMut(usize)) {
         for body in 0..self.bodies.len() as u32 {
-            // A body that a script begins to move was not woken by anybody.
+            // A body that becomes kinematic was not woken by another body.
             let awake = !self.bodies.is_asleep(body) || self.bodies.is_active(body as usize);
             if awake && self.sleeps_with_samples(body, particles, rows) {
                 let ids = self.first_sample[body as usize]..self.first_sample[body as usize + 1];

@@ -1,6 +1,6 @@
 //! A fluid that stays outside of bodies.
 //!
-//! What moves little in a substep is pushed out along the nearest face. What moves far could be past the
+//! A particle that moves little in a substep is pushed out along the nearest face. One that moves far could be past the
 //! middle of a thin body, or past the body: there the face counts that its path came in by.
 
 use std::collections::BTreeMap;
@@ -16,14 +16,14 @@ use crate::shapes::{Nearest, Shape, first_crossing, nearest_on_polygon};
 use crate::walls::Walls;
 
 /// How often a path that was turned out of one body is tried against the others: corners need two. In the
-/// second half of them only against those that cannot give way.
+/// second half of the turns, only against bodies that cannot give way.
 const TURNS: usize = 4;
 
 /// A fluid particle that may be inside a body.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
 pub(super) struct Penetration {
     row: u32,
-    /// Bodies that cannot give way come last: they have the last word.
+    /// Bodies that cannot give way are resolved last and so determine the result.
     fixed: bool,
     body: u32,
 }
@@ -57,8 +57,8 @@ impl RigidBodies {
         }
     }
 
-    /// Turns the path of a fast particle out of all bodies that it came into. Those that cannot give way
-    /// have the last word.
+    /// Turns the path of a fast particle out of all bodies that it came into. Bodies that cannot give way
+    /// are resolved last.
     fn sweep(&mut self, row: u32, particles: &mut Particles, walls: &Walls, dt: f64) {
         let start = particles.start[row as usize];
         for turn in 0..TURNS {
@@ -92,7 +92,7 @@ impl RigidBodies {
         let (mut from, to) = (self.on_body(body, from, End::Start), self.on_body(body, to, End::Predicted));
         let view = &self.bodies.views()[body as usize];
         let before = nearest(view, from);
-        // What starts inside counts as starting on the face nearest to it.
+        // A path that starts inside counts as starting on the face nearest to it.
         from -= before.normal * before.distance.min(0.0);
         let mut way = nearest(view, to);
         // The nearest face is the way out if the path can have come in there.
@@ -141,7 +141,7 @@ impl RigidBodies {
         let arm = wide(particles.position[row]) - pose.position;
         let normal = Vector64::from_angle(pose.angle).rotate(way.normal);
         let depth = -way.distance;
-        // Only what the two have come nearer in this substep becomes velocity.
+        // Only the part of the approach that arose in this substep becomes velocity.
         let moved = wide(particles.displacement[row]) - self.bodies.displacement_at(body, arm);
         let approach = (-moved.dot(normal)).clamp(0.0, depth);
         let response = self.bodies.response(body);

@@ -1,4 +1,4 @@
-//! Bodies that are particles, drawn back to their shapes: what a run shows of them follows their samples.
+//! Bodies made of particles, drawn back to their shapes: their visible state follows their samples.
 
 use super::RigidBodies;
 use crate::constraints::Member;

@@ -1,4 +1,4 @@
-//! An edit that was found sound is made.
+//! Application of an edit that passed its checks.
 
 use std::ops::Range;
 
@@ -17,7 +17,7 @@ impl Solver {
     /// New particles may lie anywhere; two in the same place press each other away hard.
     ///
     /// # Errors
-    /// [`EditError`] says what is wrong; nothing has changed then.
+    /// [`EditError`] names the fault; nothing has changed then.
     pub fn apply(&mut self, edit: &Edit) -> Result<Range<u32>, EditError> {
         Checker::new(self).check(edit)?;
         let first = self.particles().ids_given();

@@ -8,7 +8,7 @@ use crate::rigid::{BodyKind, Twist};
 use crate::scene::{FARTHEST, PointMotion};
 use crate::step::{ABSURD_SPEED, Solver};
 
-/// What an edit is held against.
+/// The state that an edit is checked against.
 pub(super) struct Checker<'a> {
     solver: &'a Solver,
     /// All ids in ascending order.
@@ -99,7 +99,7 @@ impl<'a> Checker<'a> {
         finite("angular velocity", 0, velocity.angular)
     }
 
-    /// Smoke follows its carrier, whatever is asked of it.
+    /// Smoke follows its carrier, whatever motion is set.
     fn motion(&self, ids: &[u32]) -> Result<(), EditError> {
         let particles = self.solver.particles();
         let smoke = |row: &usize| particles.phases()[*row].is_passive();
@@ -176,7 +176,7 @@ fn both_finite(what: &'static str, index: usize, value: Vector64) -> Result<(), 
 }
 
 fn finite(what: &'static str, index: usize, value: f64) -> Result<(), EditError> {
-    // What overflows the particles' precision is as bad as what is infinite.
+    // A value that overflows the particles' precision is as bad as an infinite one.
     if crate::math::real(value).is_finite() {
         return Ok(());
     }

@@ -10,7 +10,7 @@ pub enum EditError {
     RepeatedId(u32),
     /// There must be one value for each id, or each new particle.
     Lengths {
-        /// What the values are.
+        /// Name of the values.
         what: &'static str,
         /// Number of particles.
         particles: usize,
@@ -19,11 +19,11 @@ pub enum EditError {
     },
     /// A value cannot be used.
     Value {
-        /// What it is: a position, a velocity...
+        /// Kind of the value: a position, a velocity...
         what: &'static str,
         /// Place in the values given.
         index: usize,
-        /// What is wrong with it.
+        /// Fault of the value.
         reason: String,
     },
     /// The scene has no material of this name.
@@ -33,7 +33,7 @@ pub enum EditError {
         /// The names there are.
         known: Vec<String>,
     },
-    /// The material's particles cannot do what was asked.
+    /// The material's particles do not support the change.
     Unfit(String),
 }
 

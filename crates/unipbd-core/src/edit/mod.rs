@@ -54,7 +54,7 @@ pub struct Points {
     pub positions: Vec<Vector64>,
     /// Velocity of all of them where `velocities` is empty [m/s].
     pub velocity: Vector64,
-    /// Velocity of each, or nothing [m/s].
+    /// Velocity of each, or empty [m/s].
     pub velocities: Vec<Vector64>,
     /// Temperature, for gas.
     pub temperature: f64,
@@ -100,14 +100,14 @@ impl Edit {
         self.change(ids, Values::Temperatures(temperatures.into()))
     }
 
-    /// Takes particles into the hand of a script, or lets them go.
+    /// Makes particles kinematic, or dynamic again.
     #[must_use]
     pub fn set_motion(self, ids: impl Into<Vec<u32>>, motion: PointMotion) -> Self {
         self.change(ids, Values::Motion(motion))
     }
 
     /// Gives a body this velocity of its centre of mass [m/s] and angular velocity [rad/s]. A dynamic body
-    /// goes on from there; a kinematic one keeps it, whatever its script says, until it is given another.
+    /// goes on from there; a kinematic one keeps it, overriding its script, until it is given another.
     /// Bodies are named by their place in [`Solver::bodies`](crate::Solver::bodies).
     #[must_use]
     pub fn set_body_velocity(mut self, body: u32, velocity: Vector64, angular_velocity: f64) -> Self {
@@ -129,7 +129,7 @@ impl Edit {
         self
     }
 
-    /// Whether there is nothing to do.
+    /// Whether the edit is empty.
     pub fn is_empty(&self) -> bool {
         self.changes.is_empty() && self.bodies.is_empty() && self.removals.is_empty() && self.additions.is_empty()
     }

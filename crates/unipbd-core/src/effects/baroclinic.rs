@@ -19,7 +19,7 @@ pub struct Baroclinic {
 }
 
 impl Baroclinic {
-    /// That of a scene, or nothing where no gas has it.
+    /// The baroclinic effect of a scene; `None` where no gas has it.
     pub fn new(scene: &Scene) -> Option<Self> {
         let strength = per_gas(scene, |gas| gas.baroclinic);
         any(&strength).then(|| Baroclinic {

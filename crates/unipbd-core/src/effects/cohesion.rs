@@ -22,7 +22,7 @@ pub struct Cohesion {
 }
 
 impl Cohesion {
-    /// The cohesion of a scene, or nothing where no liquid has any.
+    /// The cohesion of a scene; `None` where no liquid has any.
     pub fn new(scene: &Scene) -> Option<Self> {
         let of = |material: MaterialRef<'_>| match material {
             MaterialRef::Liquid(liquid) => real(liquid.cohesion),

@@ -19,7 +19,7 @@ pub struct Conduction {
 }
 
 impl Conduction {
-    /// The conduction of a scene, or nothing where no gas conducts.
+    /// The conduction of a scene; `None` where no gas conducts.
     pub fn new(scene: &Scene) -> Option<Self> {
         let diffusivity = per_gas(scene, |gas| gas.conductivity);
         any(&diffusivity).then(|| Conduction {

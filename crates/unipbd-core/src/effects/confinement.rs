@@ -23,7 +23,7 @@ pub struct VorticityConfinement {
 }
 
 impl VorticityConfinement {
-    /// The confinement of a scene, or nothing where no gas asks for it.
+    /// The confinement of a scene; `None` where no gas asks for it.
     pub fn new(scene: &Scene) -> Option<Self> {
         let strength = per_gas(scene, |gas| gas.vorticity);
         any(&strength).then(|| VorticityConfinement {

@@ -21,7 +21,7 @@ pub enum DragLaw {
 }
 
 impl Drag {
-    /// The drag of a scene by this law, or nothing where no material has one.
+    /// The drag of a scene by this law; `None` where no material has one.
     pub fn new(scene: &Scene, law: DragLaw, seed: u64) -> Option<Self> {
         let coefficient = match law {
             DragLaw::Thin => per_gas(scene, |gas| gas.drag),

@@ -10,7 +10,7 @@ pub struct Heating {
 }
 
 impl Heating {
-    /// The heaters of a scene, or nothing where there are none.
+    /// The heaters of a scene; `None` where there are none.
     pub fn new(scene: &Scene) -> Option<Self> {
         let of = |heater: &crate::scene::Heater| (heater.region.clone(), real(heater.temperature), real(heater.rate));
         (!scene.heater.is_empty()).then(|| Heating { heaters: scene.heater.iter().map(of).collect() })

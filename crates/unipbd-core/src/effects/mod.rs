@@ -33,12 +33,12 @@ pub trait Effect: Send + Sync {
     /// The name under which the effect is timed.
     fn name(&self) -> &'static str;
 
-    /// What the effect needs from the loop.
+    /// The data that the effect needs from the loop.
     fn needs(&self) -> Needs {
         Needs::NEIGHBORS
     }
 
-    /// Adds to `out` what is to change; the loop applies it to all rows but those moved by a script.
+    /// Adds the changes to `out`; the loop applies them to all rows but those of kinematic particles.
     fn apply(&mut self, now: Substep<'_>, out: &mut Changes);
 
     /// Memory held by columns of its own [bytes].
@@ -46,7 +46,7 @@ pub trait Effect: Send + Sync {
         0
     }
 
-    /// The part of what the scene asks for that was stable in the last substep: 1 unless it was cut.
+    /// The part of the effect's strength that was stable in the last substep: 1 unless it was cut.
     fn stable_fraction(&self) -> f64 {
         1.0
     }

@@ -22,7 +22,7 @@ const LEAST_DISTANCE: f64 = 0.25;
 ///
 /// Large nu dt/dx^2 takes the stages of the Runge-Kutta-Legendre rule of first order (Meyer et al.
 /// 2014): s of them are stable for (s^2 + s)/2 explicit steps, and each keeps momentum. Beyond the
-/// last stage the viscosity is cut to what is stable, and [`stable_fraction`](Effect::stable_fraction) says so.
+/// last stage the viscosity is cut to the stable value: see [`stable_fraction`](Effect::stable_fraction).
 pub struct ShearViscosity {
     kernel: Kernel,
     coverage: Coverage,
@@ -33,7 +33,7 @@ pub struct ShearViscosity {
     inverse_density: Vec<Real>,
     /// Largest rate at which a velocity difference decays [1/s].
     fastest: f64,
-    /// Part of the viscosity that the last substep could bear.
+    /// Part of the viscosity that was stable in the last substep.
     stable_fraction: f64,
     weights: Vec<Real>,
     sums: Vec<Vector>,
@@ -43,7 +43,7 @@ pub struct ShearViscosity {
 }
 
 impl ShearViscosity {
-    /// The viscosities of a scene, or nothing where all are 0.
+    /// The viscosities of a scene; `None` where all are 0.
     pub fn new(scene: &Scene) -> Option<Self> {
         let dynamic = |material: MaterialRef<'_>| material.kinematic_viscosity() * material.density();
         let root: Vec<Real> = scene.materials().map(|material| real(dynamic(material).sqrt())).collect();
@@ -163,7 +163,7 @@ impl Effect for ShearViscosity {
                 }
             });
         }
-        // Viscosity makes nothing faster than the fastest (maximum principle). A heap crushed to many times
+        // Viscosity raises no speed above the largest one (maximum principle). A heap crushed to many times
         // its density has larger eigenvalues than the stages can bear, and would be thrown otherwise.
         let square = now.parallelism.max(rows, |row| velocities[row].length_squared());
         let fastest = square.max(now.walls.fastest_squared()).sqrt();

@@ -20,7 +20,7 @@ pub struct Xsph {
 }
 
 impl Xsph {
-    /// The XSPH of a scene, or nothing where all are 0.
+    /// The XSPH of a scene; `None` where all are 0.
     pub fn new(scene: &Scene) -> Option<Self> {
         let of = |material: MaterialRef<'_>| match material {
             MaterialRef::Liquid(liquid) => real(liquid.xsph),

@@ -76,7 +76,7 @@ pub struct LatticeSums {
     pub value: f64,
     /// sum of |grad W|^2 [1/m^6].
     pub gradient_squared: f64,
-    /// -sum of y dW/dy [1/m^2]: times the volume, what the gradient of a linear field comes out as.
+    /// -sum of y dW/dy [1/m^2]: times the volume, the gradient that the lattice gives for a linear field of slope 1.
     pub moment: f64,
 }
 

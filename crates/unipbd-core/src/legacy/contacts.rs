@@ -17,7 +17,7 @@ pub fn contacts(walls: &[Wall], settings: ContactSettings, legacy: &LegacySettin
 }
 
 struct LegacyContacts {
-    /// Averaged Jacobi in place of split Jacobi: nothing lasts from substep to substep.
+    /// Averaged Jacobi in place of split Jacobi: no impulse is kept from substep to substep.
     averaged: bool,
     /// k of equation 21 [1/m]; 0 for none.
     mass_scaling: f64,
@@ -43,8 +43,8 @@ impl ContactSolver for LegacyContacts {
     }
 }
 
-/// One iteration on the positions alone: what lies too deep is taken out, and of the way the bodies slid past each
-/// other what friction holds back for this depth.
+/// One iteration on the positions alone: removes the overlap, and the part of the relative sliding
+/// that friction holds back for this depth.
 fn project(contact: &mut Contact, surface: &Surface, displacements: &[Twist]) -> Push {
     let mut push = Push::default();
     let Some(pressed) = contact.press(displacements, [0.0; 2]) else { return push };

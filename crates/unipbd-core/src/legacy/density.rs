@@ -17,7 +17,7 @@ const REFERENCE: f64 = 0.2;
 /// The density constraints of all liquids and gases, with the options of the paper.
 pub struct LegacyDensity {
     density: Density<Formula>,
-    /// What one neighbour counts [m^2].
+    /// Weight of one neighbour [m^2].
     volume: Real,
     /// Constraint force mixing over the squared volume, by material [1/(kg m^6)]; empty for none.
     mixing: Vec<Real>,
@@ -36,7 +36,7 @@ struct ArtificialPressure {
 }
 
 impl LegacyDensity {
-    /// The group of a scene, around its density group. `volume` is what one neighbour counts there [m^2].
+    /// The group of a scene, around its density group. `volume` is the weight of one neighbour there [m^2].
     pub fn new(scene: &Scene, kernel: Kernel<Formula>, volume: Real, density: Density<Formula>) -> Self {
         let legacy = &scene.legacy;
         let at_rest = legacy.constraint_mixing * kernel.lattice(scene.spacing).gradient_squared;

@@ -1,4 +1,4 @@
-//! Kernels that nothing modern uses: the cubic spline, and poly6 with the gradient of spiky.
+//! Kernels used by legacy options only: the cubic spline, and poly6 with the gradient of spiky.
 
 use std::f64::consts::PI;
 
@@ -18,7 +18,7 @@ pub struct Formula {
 
 #[derive(Clone, Copy, Debug)]
 enum Form {
-    /// Wendland C2, for what is compared with the default kernel.
+    /// Wendland C2, for comparisons with the default kernel.
     WendlandC2(WendlandC2),
     /// W = 40/(7 pi h^2) times 1 + 6 (q^3 - q^2) up to q = 1/2, then 2 (1-q)^3 (Monaghan 1992).
     CubicSpline,

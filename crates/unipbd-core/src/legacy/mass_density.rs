@@ -20,7 +20,7 @@ pub struct MassDensity {
     rows: Vec<Row>,
 }
 
-/// What the group knows of a material; all zero where it is no fluid.
+/// Coefficients of a material in the group; all zero where it is no fluid.
 #[derive(Clone, Copy, Default)]
 struct Matter {
     mass: Real,
@@ -32,7 +32,7 @@ struct Matter {
     inverse_reference: Real,
 }
 
-/// What the second pass needs to know of a row.
+/// Values of a row that the second pass reads.
 #[derive(Clone, Copy, Default)]
 struct Row {
     /// Multiplier over rest density.
@@ -102,7 +102,7 @@ impl MassDensity {
                 response += inverse_masses[i] * gradient.length_squared();
                 response *= own.inverse_density * own.inverse_density;
                 error[k] = density * own.inverse_density - 1.0;
-                // What a script moves pushes and never pulls: its own response is missing.
+                // A kinematic particle pushes and never pulls: its own response is missing.
                 let least = if inverse_masses[i] == 0.0 { 0.0 } else { own.multiplier_min };
                 multiplier[k] = (relaxation * error[k] / (response + own.mixing)).max(least);
                 rows[k] = Row { scaled: multiplier[k] * own.inverse_density, gradient, neighbors };

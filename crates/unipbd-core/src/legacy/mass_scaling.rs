@@ -1,13 +1,13 @@
 //! Mass scaling (Macklin et al. 2014, equation 21): m* = m exp(-k h), for contacts alone.
 //!
-//! The height h counts from the lowest support of a heap (where it touches what does not move; without such
+//! The height h counts from the lowest support of a heap (its contact with an immovable body or wall; without such
 //! a place, from its lowest body), so that the factor does not depend on where the heap stands.
 
 use crate::math::Vector64;
 use crate::rigid::contact::{Contact, UnionFind, entry};
 use crate::rigid::{Bodies, InverseMass};
 
-/// Masses are scaled by no more than this, or impulses would drown in rounding.
+/// Limit of the mass scale. Larger scales would drown impulses in rounding.
 const LARGEST: f64 = 1e6;
 
 /// Writes the inverse masses that contacts see, exp(k h) times those of the bodies.

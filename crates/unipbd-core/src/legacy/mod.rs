@@ -1,6 +1,6 @@
 //! Options of Macklin & Müller 2013, of Macklin et al. 2014 and of the program that this project grew from: groups and
-//! a contact solver of their own, which the builder takes where the `[legacy]` table of a scene asks for them. Nothing
-//! else knows of them.
+//! a contact solver of their own, which the builder takes where the `[legacy]` table of a scene asks for them. No
+//! other module depends on them.
 
 mod contacts;
 mod density;

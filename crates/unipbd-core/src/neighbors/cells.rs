@@ -7,7 +7,7 @@ use crate::periodic::{Periodic, PeriodicAxis};
 /// Bins per row height: narrow bins keep the stretches of a row tight.
 const BINS_PER_ROW_HEIGHT: Real = 4.0;
 
-/// Cell numbers stay within this, so that sums of a few never overflow; what lies beyond shares the last cell.
+/// Cell numbers stay within this, so that sums of a few never overflow; points beyond share the last cell.
 const FARTHEST: Real = 1_073_741_824.0;
 
 /// One axis of the grid.
@@ -50,7 +50,7 @@ impl Axis {
     #[inline(always)]
     pub fn near(&self, low: Real, high: Real, radius: Real) -> (Span, Option<Span>) {
         let Some((axis, count)) = self.period else {
-            // Distances are rounded: what counts as within the radius may lie a few roundings outside it.
+            // Distances are rounded: a point within the radius may lie a few roundings outside it.
             let reach = radius * (1.0 + 8.0 * Real::EPSILON);
             return (Span { first: self.cell(low - reach), last: self.cell(high + reach) }, None);
         };

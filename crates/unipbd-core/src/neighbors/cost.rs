@@ -1,12 +1,12 @@
-//! How wide a skin pays.
+//! The cost of a skin, and the cheapest width.
 
 use crate::math::{Real, real};
 use std::f64::consts::PI;
 
-/// What it takes to sort a row and to search around it, in visits of one pair by one pass (measured:
+/// Cost of sorting a row and searching around it, in visits of one pair by one pass (measured:
 /// about 47 ns over 0.46 ns, `cargo run --release -p unipbd-benches --bin roofline`).
 const ROW_COST: f64 = 100.0;
-/// What it takes to list a pair, in the same unit.
+/// Cost of listing a pair, in the same unit.
 const PAIR_COST: f64 = 0.8;
 /// Widest skin, as a part of the radius: beyond it lists take too much memory.
 const LONGEST_SKIN: f64 = 0.3;
@@ -15,7 +15,7 @@ const MARGIN: f64 = 1.05;
 /// A list is not meant to last for more substeps than this.
 const LONGEST_LIFE: u32 = 64;
 
-/// What lists and passes cost in a scene.
+/// Cost of lists and passes in a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ListCost {
     /// Radius of the kernel over the spacing of the particles.

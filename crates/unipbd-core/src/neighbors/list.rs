@@ -159,7 +159,7 @@ impl NeighborList {
         self.chunks.iter().map(|chunk| chunk.pairs).sum()
     }
 
-    /// Number of slots, padding included: what a pass over the list computes.
+    /// Number of slots, padding included: the work of a pass over the list.
     pub fn slots(&self) -> u64 {
         let blocks = self.chunks.iter().flat_map(|chunk| &chunk.blocks);
         blocks.map(|block| u64::from(block.depth) * LANES as u64).sum()
@@ -209,7 +209,7 @@ fn shifted(first: usize, offset: i32) -> usize {
 /// A block whose rows are spread over more than this many radii searches for each row by itself.
 const TOGETHER: Real = 4.0;
 
-/// What the list is built from.
+/// Input of a list build.
 struct Search<'a> {
     grid: &'a Grid,
     /// Indexes of the rows behind those of `grid`, one after the other.
@@ -267,7 +267,7 @@ impl Search<'_> {
     fn extent(&self, centers: &[Vector; LANES]) -> Option<(Vector, Vector)> {
         let periodic = self.grid.periodic();
         let wrapped = centers.map(|center| periodic.wrap(center));
-        // Comparisons pass over what is not a number, except in the first lane, where it ends in `None`.
+        // Comparisons pass over NaN, except in the first lane, where it ends in `None`.
         let (mut low, mut high) = (wrapped[0], wrapped[0]);
         for x in wrapped {
             low = Vector::new(if x.x < low.x { x.x } else { low.x }, if x.y < low.y { x.y } else { low.y });
@@ -317,7 +317,7 @@ impl Chunk {
         self.pairs = 0;
     }
 
-    /// Transposes what was found for a block into columns.
+    /// Transposes the rows found for a block into columns.
     #[inline(always)]
     fn push(&mut self, near: impl Near, base: usize, rows: usize) {
         let (found, reach) = (&self.scratch.found, &self.scratch.reach);
@@ -342,7 +342,7 @@ impl Chunk {
     }
 }
 
-/// Room for some more columns, and an eighth of all: a list is most of what a particle takes, and doubling
+/// Room for some more columns, and an eighth of all: lists take most of the memory of a particle, and doubling
 /// would leave half of it empty.
 fn make_room<T>(columns: &mut Vec<T>, more: usize) {
     if columns.capacity() - columns.len() < more {

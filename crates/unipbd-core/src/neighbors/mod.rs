@@ -1,4 +1,4 @@
-//! Who is near whom: particles sorted by cell, an index of the occupied cells, and a neighbour list
+//! Neighbour search: particles sorted by cell, an index of the occupied cells, and a neighbour list
 //! with a skin that outlives several substeps.
 //!
 //! 1. [`Grid::order`] sorts rows by cell (parallel, stable) and indexes the cells: densely while the

@@ -1,5 +1,5 @@
 //! The inner loops over runs of rows: which of them are near the rows of a block, the transposition
-//! of what was found into columns, and what they weigh at a point.
+//! of the rows found into columns, and their kernel sums at a point.
 #![cfg_attr(not(feature = "f64"), allow(unsafe_code))]
 
 use super::weigh::{At, Weighed};
@@ -10,7 +10,7 @@ use crate::simd::space::Space;
 use crate::simd::{LANES, Level};
 use std::ops::Range;
 
-/// Slots kept free beyond what a lane holds: stores and loads go by eight.
+/// Slots kept free beyond the count of a lane: stores and loads go by eight.
 const SPARE: usize = 16;
 
 /// The rows found so far for the rows of one block.
@@ -99,11 +99,11 @@ pub(crate) trait Near: Copy {
         found: &mut Found,
     );
 
-    /// Appends `depth` columns of what was found, relative to the first row of the block, which all
+    /// Appends `depth` columns of the rows found, relative to the first row of the block, which all
     /// fit in 16 bits. Short lanes are filled up with `padding`.
     fn columns(self, found: &Found, depth: usize, padding: [i16; LANES], out: &mut Vec<[i16; LANES]>);
 
-    /// Adds to `sums` what the rows of `run` weigh at a point.
+    /// Adds to `sums` the kernel sums of the rows of `run` at a point.
     fn weigh<S: Space, K: Shape>(self, at: &At<'_, S, K>, run: Range<usize>, sums: &mut Weighed);
 }
 
@@ -114,7 +114,7 @@ pub(crate) trait Work {
 }
 
 /// Runs `work` in this instruction set, or, where the build has no form for it, one point at a time.
-/// What is found does not depend on it.
+/// The result does not depend on it.
 pub(crate) fn dispatch(level: Level, work: impl Work) {
     match level {
         #[cfg(all(target_arch = "x86_64", not(feature = "f64")))]
@@ -259,8 +259,8 @@ mod avx2 {
             assert!(depth + SPARE <= found.room + LANES && found.rows.len() >= LANES * found.room);
             out.reserve(depth);
             for first in (0..depth).step_by(LANES) {
-                // SAFETY: a value of this type proves AVX2. Depth is at most one more than what a lane
-                // holds, which leaves more than eight slots to spare, so the loads are within its room.
+                // SAFETY: a value of this type proves AVX2. Depth is at most one more than the count of a
+                // lane, which leaves more than eight slots to spare, so the loads are within its room.
                 let columns = unsafe { eight_columns(found, first, padding) };
                 out.extend_from_slice(&columns[..LANES.min(depth - first)]);
             }

@@ -79,7 +79,7 @@ impl<'a> Band<'a> {
 #[derive(Default)]
 pub(super) struct CountingSort {
     keys: Vec<u32>,
-    /// Smallest and largest key of each chunk: lets a band pass over the chunks it has nothing in.
+    /// Smallest and largest key of each chunk: lets a band skip the chunks that hold none of its keys.
     key_ranges: Vec<(u32, u32)>,
 }
 

@@ -8,7 +8,7 @@ use crate::particles::{Particles, Scratch};
 use crate::periodic::Periodic;
 use std::ops::Range;
 
-/// For which positions a list must hold.
+/// The positions for which a list must hold.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum SearchPositions {
     /// The predicted ones only.
@@ -26,7 +26,7 @@ pub enum Prepared {
     Rebuilt,
 }
 
-/// What a saved state keeps of the search: the list is made from it again.
+/// The saved state of the search, from which the list is made again.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct SavedList {
     /// Positions the list was built at, in its row order [m].
@@ -307,7 +307,7 @@ impl Neighbors {
         }
     }
 
-    /// What a saved state needs to make the same list again.
+    /// The state from which the same list can be made again.
     pub(crate) fn saved(&self) -> SavedList {
         SavedList { reference: self.list.reference().to_vec(), skin: self.list.skin(), motion: self.motion }
     }
@@ -332,7 +332,7 @@ impl Neighbors {
         self.motion = saved.motion;
     }
 
-    /// What the sleeping rows are sorted for [m].
+    /// The radius that the sleeping rows are sorted for [m].
     fn still_radius(&self) -> Real {
         self.radius * (1.0 + ListCost::LONGEST)
     }

@@ -16,7 +16,7 @@ use std::ops::Range;
 /// How particles have moved since a list was built.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// What they have in common [m].
+    /// Common drift of all rows [m].
     pub drift: Vector,
     /// No displacement is farther from the drift [m]; infinite where one is not a number.
     pub deviation: Real,

@@ -19,7 +19,7 @@ pub(crate) struct At<'a, S, K> {
     pub kernel: K,
     pub point: Vector,
     pub positions: &'a [Vector],
-    /// What is weighed: as many rows as `positions`.
+    /// The vectors to sum: as many rows as `positions`.
     pub vectors: &'a [Vector],
 }
 
@@ -73,7 +73,7 @@ impl Weighed {
     /// The machine has AVX2.
     #[inline(always)]
     pub(super) unsafe fn add_eight_at_a_time<S: Space, K: Shape>(&mut self, at: &At<'_, S, K>, run: Range<usize>) {
-        /// From here on eight counts, of which as many are not zero as rows are left.
+        /// Eight counts are read from an offset in this table: as many of them are nonzero as rows are left.
         static COUNTED: [u32; 2 * LANES] = [1, 1, 1, 1, 1, 1, 1, 1, 0, 0, 0, 0, 0, 0, 0, 0];
         let rows = at.positions.len();
         assert!(rows == at.vectors.len() && run.start <= run.end && run.end <= rows);

@@ -18,14 +18,14 @@ pub enum Severity {
     Warning,
 }
 
-/// Something that happened during a run.
+/// An event of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
     /// Simulated time [s].
     pub time: f64,
     /// How grave it is.
     pub severity: Severity,
-    /// What happened.
+    /// Description of the event.
     pub message: String,
 }
 

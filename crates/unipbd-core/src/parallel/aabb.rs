@@ -52,7 +52,7 @@ impl Aabb {
         }
     }
 
-    /// The lower left and the upper right corner. What is not a number is passed over.
+    /// The lower left and the upper right corner. NaN is passed over.
     pub fn corners(&self) -> (Vector, Vector) {
         let low = self.low.into_iter().reduce(lower).unwrap_or_default();
         let high = self.high.into_iter().map(|high| -high).reduce(lower).unwrap_or_default();

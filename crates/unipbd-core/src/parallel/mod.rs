@@ -137,7 +137,7 @@ impl Parallelism {
         self.reduce(rows, of_chunk, larger)
     }
 
-    /// Sum of `value(row)` in double precision, in an order that depends on nothing but `rows`.
+    /// Sum of `value(row)` in double precision, in an order that depends on `rows` alone.
     pub fn sum(self, rows: usize, value: impl Fn(usize) -> f64 + Sync) -> f64 {
         self.reduce(rows, |range| range.map(&value).sum::<f64>(), |a, b| a + b)
     }

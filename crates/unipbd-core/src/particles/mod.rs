@@ -1,10 +1,10 @@
 //! Particles as columns, one row each.
 //!
 //! Rows `[0, dense)` take part in the density and in neighbour lists (liquid, gas, rigid samples), the
-//! last of them, `[awake, dense)`, asleep: nothing moves them. Those that sleep near others that are
+//! last of them, `[awake, dense)`, asleep: they are held in place. Those that sleep near others that are
 //! awake, `[awake, listed)`, have neighbour lists and a pressure all the same. Rows `[dense, len)` are
-//! loose: smoke markers and free points. Rows are re-sorted as particles move, so a row number means
-//! nothing between two steps: the id does.
+//! loose: smoke markers and free points. Rows are re-sorted as particles move, so a row number is not
+//! valid between two steps: the id is.
 
 use crate::bytes::{Damage, Reader, Writer, held};
 use crate::math::{Real, Vector, Vector64, vector, wide};
@@ -31,18 +31,18 @@ pub struct OptionalColumns {
     pub temperature: bool,
     /// Age, for materials with a lifetime.
     pub age: bool,
-    /// How long and since where a particle has been at rest, for liquids that sleep.
+    /// Time and place of rest of a particle, for liquids that sleep.
     pub rest: bool,
 }
 
 /// A particle about to be added.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewParticle {
-    /// Position [m]; what rounding takes from it is kept.
+    /// Position [m]; the rounding error is kept.
     pub position: Vector64,
     /// Velocity [m/s].
     pub velocity: Vector,
-    /// Inverse mass [1/kg]; 0 for a particle moved by a script.
+    /// Inverse mass [1/kg]; 0 for a kinematic particle.
     pub inverse_mass: Real,
     /// Material.
     pub material: MaterialIndex,
@@ -80,7 +80,7 @@ macro_rules! columns {
                 $( self.$name.shrink_to_fit(); )*
             }
 
-            /// Brings the rows from `first` on into a new order: row `first + i` becomes what stood in
+            /// Brings the rows from `first` on into a new order: row `first + i` becomes the old
             /// row `first + order[i]`.
             pub(crate) fn reorder(
                 &mut self,
@@ -141,7 +141,7 @@ columns! {
     remainder: Vector,
     /// Velocity [m/s].
     velocity: Vector,
-    /// Inverse mass [1/kg]; 0 for particles moved by a script.
+    /// Inverse mass [1/kg]; 0 for kinematic particles.
     inverse_mass: Real,
     /// Density error C of the last substep.
     density_error: Real,
@@ -191,7 +191,7 @@ impl Particles {
         self.dense - self.asleep
     }
 
-    /// Dense rows that sleep: held where they are until something near them moves.
+    /// Dense rows that sleep: held in place until a body or particle near them moves.
     pub fn asleep(&self) -> usize {
         self.asleep
     }
@@ -203,7 +203,7 @@ impl Particles {
 
     /// The rows that move: those awake, and the loose ones.
     pub(crate) fn bands(&self) -> [Range<usize>; 2] {
-        // One band where nothing sleeps: then loops are cut into the same chunks as ever.
+        // One band where no row sleeps: then loops are cut into the same chunks as without sleep.
         if self.asleep == 0 { [0..self.len(), 0..0] } else { [0..self.awake(), self.dense..self.len()] }
     }
 
@@ -243,7 +243,7 @@ impl Particles {
         &self.velocity
     }
 
-    /// Inverse masses [1/kg]; 0 for particles moved by a script.
+    /// Inverse masses [1/kg]; 0 for kinematic particles.
     pub fn inverse_masses(&self) -> &[Real] {
         &self.inverse_mass
     }
@@ -273,7 +273,7 @@ impl Particles {
         &self.density_error
     }
 
-    /// Whether a dense particle is, or ever was, moved by a script.
+    /// Whether a dense particle is, or ever was, kinematic.
     pub(crate) fn any_scripted(&self) -> bool {
         self.scripted
     }

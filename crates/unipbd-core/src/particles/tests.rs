@@ -1,4 +1,4 @@
-//! Rows, ids and phases stay together whatever is added and removed.
+//! Rows, ids and phases stay together through all additions and removals.
 
 use super::*;
 

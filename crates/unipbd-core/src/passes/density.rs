@@ -9,7 +9,7 @@ use crate::simd::Number;
 use crate::simd::space::Space;
 use std::ops::Range;
 
-/// What the density pass reads.
+/// Input of the density pass.
 #[derive(Clone, Copy)]
 pub struct DensityInput<'a> {
     /// Where W is taken.
@@ -20,7 +20,7 @@ pub struct DensityInput<'a> {
     pub weights: Weights<'a>,
 }
 
-/// What the density pass writes: one row per row of the list.
+/// Output of the density pass: one row per row of the list.
 pub struct DensityOutput<'a> {
     /// sum_j W_ij [1/m^2].
     pub value: &'a mut [Real],

@@ -1,8 +1,8 @@
-//! The passes over all pairs of neighbours: where a step spends its time.
+//! The passes over all pairs of neighbours. They take most of the time of a step.
 //!
 //! Each pass is one function over plain columns. It picks the widest instruction set of the machine
 //! once per chunk of rows and works on eight rows at a time, straight from the blocks of the
-//! [`NeighborList`]. Beside its lane form every pass has a scalar form, which is what it computes:
+//! [`NeighborList`]. Beside its lane form every pass has a scalar form, which defines its result:
 //! all forms give the same bits, because none of them fuses or reorders an operation, and square
 //! roots and quotients are exact everywhere. With the `f64` feature only the scalar forms exist.
 //!
@@ -93,7 +93,7 @@ impl<'a> Pairs<'a> {
     }
 
     /// Puts the first `rows` rows of two columns side by side for the lane forms; the scalar ones read the columns,
-    /// and where all sleep nobody does.
+    /// and where all sleep the records are not read.
     fn pack<'r>(&self, records: &'r mut Records, rows: usize, record: impl Fn(usize) -> Record + Sync) -> &'r [Record] {
         if cfg!(feature = "f64") || self.level == Level::Scalar || self.rows() == 0 {
             return &[];
@@ -174,7 +174,7 @@ pub enum Weights<'a> {
 }
 
 impl<'a> Weights<'a> {
-    /// The column, or nothing, and the factor common to all rows.
+    /// The column, if there is one, and the factor common to all rows.
     fn parts(self) -> (&'a [Real], Real) {
         match self {
             Weights::Uniform(factor) => (&[], factor),
@@ -198,7 +198,7 @@ pub(super) trait Pass<const N: usize>: Sync {
     /// The result for one row.
     fn row(&self, list: &NeighborList, row: usize) -> [Real; N];
 
-    /// What a row gets from its sums.
+    /// The result of a row from its sums.
     fn finish<M: Number>(&self, sums: [M; N]) -> [M; N];
 
     /// Rows that every column it reads has.

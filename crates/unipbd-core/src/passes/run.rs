@@ -16,7 +16,7 @@ use std::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
 
 /// The lane form of a pass that sums `N` numbers per row.
 pub(super) trait LanePass<const N: usize>: Pass<N> {
-    /// What it reads of the eight rows themselves.
+    /// The values of the eight rows themselves.
     type Own<F: Turn>: Copy;
 
     /// Reads the rows of a block: `entries` holds their offsets from row `base`, twice.
@@ -25,7 +25,7 @@ pub(super) trait LanePass<const N: usize>: Pass<N> {
     /// The machine has the instruction set of `F`; `base` plus each offset is a row of the pass's columns.
     unsafe fn own<F: Turn>(&self, base: usize, entries: &ColumnPair<i16>) -> Self::Own<F>;
 
-    /// What two neighbours of each row add to the sums. `counted` clears the lanes that are padding.
+    /// The contributions of two neighbours of each row to the sums. `counted` clears the lanes that are padding.
     ///
     /// # Safety
     /// As for [`own`](Self::own).

@@ -28,8 +28,8 @@ pub fn xsph<K: Shape>(
     });
 }
 
-/// out_i = sum_j (s_i + s_j) w_i / (w_i + w_j) (v_j - v_i) W_ij: what two of unlike inverse masses w
-/// exchange keeps their momentum. `traits` holds the strength s and w of each row; a row with w = 0
+/// out_i = sum_j (s_i + s_j) w_i / (w_i + w_j) (v_j - v_i) W_ij: the exchange of two rows of unlike inverse masses w
+/// keeps their momentum. `traits` holds the strength s and w of each row; a row with w = 0
 /// drags others along and is not dragged.
 pub fn xsph_mixed<K: Shape>(
     pairs: Pairs<'_>,
@@ -57,7 +57,7 @@ pub fn vorticity<K: Shape>(
     in_space!(pairs, space => pairs.fill(&Vorticity { kernel, space, columns }, out));
 }
 
-/// What all passes over velocities read.
+/// Input of all passes over velocities.
 #[derive(Clone, Copy)]
 struct Columns<'a> {
     positions: &'a [Vector],

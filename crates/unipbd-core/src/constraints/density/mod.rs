@@ -120,7 +120,7 @@ impl<K: Shape> ConstraintGroup for Density<K> {
         self.resize(now.particles.listed());
         self.multiplier.fill(0.0);
         self.step.resize(now.particles.dense(), 0.0);
-        // Nobody who moves is near the rows behind the listed ones.
+        // No moving particle is near the rows behind the listed ones.
         self.step[now.particles.listed()..].fill(0.0);
     }
 

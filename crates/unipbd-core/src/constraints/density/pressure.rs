@@ -2,7 +2,7 @@
 //!
 //! The multiplier of a particle alone misleads near walls: a wall has no multiplier of its own and carries no
 //! gradient along itself, so those beside it must be larger to hold the same weight, and disorder lowers the
-//! gradient that a multiplier brings about. What momentum knows is the stress (Irving & Kirkwood 1950): the
+//! gradient that a multiplier brings about. The momentum determines the stress (Irving & Kirkwood 1950): the
 //! pair force F_ij = -(lambda_i + lambda_j) V g x_ij/dt^2 along x_ij, half for each of both, and the push of a
 //! wall -lambda_i G_wall/dt^2 over the distance to it,
 //!
@@ -74,7 +74,7 @@ fn is_pressed(now: Substep<'_>, row: usize) -> bool {
 }
 
 impl<K: Shape> Density<K> {
-    /// Pressure over density by row [m^2/s^2]; 0 for what is no fluid.
+    /// Pressure over density by row [m^2/s^2]; 0 for rows that are no fluid.
     pub(super) fn read_pressures(&self, now: Substep<'_>) -> Vec<Real> {
         let particles = now.particles;
         let mut pressures = vec![0.0; particles.len()];

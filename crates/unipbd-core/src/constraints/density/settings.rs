@@ -9,7 +9,7 @@ use crate::scene::{GradientPoint, MaterialRef, Scene};
 pub struct DensitySettings {
     /// Particle spacing dx [m].
     pub spacing: f64,
-    /// What one neighbour counts: its volume, scaled so that the rest lattice reads 1 [m^2].
+    /// Weight of one neighbour: its volume, scaled so that the rest lattice reads 1 [m^2].
     pub volume: Real,
     /// -sum of y dW/dy over the rest lattice [1/m^2].
     pub moment: f64,
@@ -41,8 +41,8 @@ pub struct DensityMaterial {
     pub gate: Real,
     /// Floor of the denominator [1/(kg m^2)]: keeps thin places from being thrown about.
     pub response_min: Real,
-    /// The same for particles moved by a script, whose own response is missing from the denominator: what
-    /// they barely touch must not be thrown [1/(kg m^2)].
+    /// The same for kinematic particles, whose own response is missing from the denominator: their weak contacts must
+    /// not throw other particles [1/(kg m^2)].
     pub scripted_response_min: Real,
     /// Mass of a particle [kg]: times the pressure limit it bounds the multiplier.
     pub mass: Real,
@@ -57,16 +57,16 @@ pub struct DensityMaterial {
 const GAS_GATE: f64 = -0.3;
 /// The denominator of a particle that resists dilation too is at least this part of its value at rest.
 const FILLED_RESPONSE_FLOOR: f64 = 0.5;
-/// That of a particle moved by a script, of any fluid, is at least this part of its value at rest.
+/// The denominator of a kinematic particle, of any fluid, is at least this part of its value at rest.
 const SCRIPTED_RESPONSE_FLOOR: f64 = 0.5;
 /// Gas particles nearer than this many spacings repel each other...
 const REPULSION_REACH: f64 = 0.8;
-/// ...as much as at this many spacings where they are nearer still: what is thrown together in one
+/// ...as much as at this many spacings where they are nearer still: particles thrown together in one
 /// substep must not be thrown apart in the next...
 const REPULSION_FULL: f64 = 0.6;
 /// ...by this part of their overlap per substep.
 const GAS_REPULSION: f64 = 0.8;
-/// Nothing is shifted farther than this in one substep [spacings].
+/// No particle is shifted farther than this in one substep [spacings].
 const FARTHEST_SHIFT: f64 = 0.05;
 /// Where the fastest goes less far in a substep than this, all are shifted in proportion: an arrangement is
 /// strained by the way it goes, however many substeps that takes, and what rests is left alone [spacings].
@@ -170,7 +170,7 @@ fn repulsion_reach(spacing: f64) -> Reach {
     Reach { full: real(REPULSION_FULL * spacing), none: real(REPULSION_REACH * spacing) }
 }
 
-/// The mass of every dense particle, if it is the same for all and none is moved by a script [kg].
+/// The mass of every dense particle, if it is the same for all and none is kinematic [kg].
 fn uniform_mass(scene: &Scene) -> Option<f64> {
     let dense = scene.materials().filter(|material| material.phase().is_dense());
     let mut masses = dense.map(|material| material.particle_mass(scene.spacing));

@@ -101,8 +101,8 @@ impl<K: Shape> Density<K> {
         let (sums, steps, walls) = (&self.sums.gradient, &self.step, &self.wall_gradient);
         let (volume, inverse_masses) = (self.settings.volume, now.particles.inverse_masses());
         let rows = now.particles.listed();
-        // The pressures that are believed accelerate to this speed at most (Bernoulli): what a step too
-        // long for them makes of a crushed heap ends there.
+        // The admitted pressures accelerate to this speed at most (Bernoulli). The limit cuts the displacements of a
+        // crushed heap where the step is too long for them.
         let farthest = (2.0 * now.pressure_limit).sqrt() * now.dt;
         now.parallelism.chunks(&mut out.displacements_mut()[..rows], |first, displacements| {
             let rows = first..first + displacements.len();
@@ -246,9 +246,9 @@ impl BehindWalls<'_> {
 /// What all rows have in common.
 #[derive(Clone, Copy)]
 struct Terms {
-    /// What one neighbour counts [m^2].
+    /// Weight of one neighbour [m^2].
     volume: Real,
-    /// What a row itself adds to its density error, less the rest density.
+    /// Contribution of a row itself to its density error, less the rest density.
     own: Real,
     /// Part of the relaxation that counts.
     stiffness: Real,
@@ -308,13 +308,13 @@ impl DensityMaterial {
         stiffness: Real,
         limit: Real,
     ) -> Real {
-        // A particle moved by a script may push, never pull: its own response is missing from the
+        // A kinematic particle may push, never pull: its own response is missing from the
         // denominator.
         let scripted = inverse_mass == 0.0;
         let least = if scripted { 0.0 } else { self.multiplier_min };
         let floor = if scripted { self.scripted_response_min } else { self.response_min };
         let new = old + stiffness * self.relaxation * error / larger(response, floor);
-        // What is squeezed in with no way out must not push harder the shorter the substep is.
+        // A confined particle must not push harder the shorter the substep is.
         let limit = limit * self.mass;
         let new = smaller(larger(larger(new, least), -limit), limit);
         if error < self.gate || self.relaxation == 0.0 { old } else { new }

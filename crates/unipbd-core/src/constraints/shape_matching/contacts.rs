@@ -165,7 +165,7 @@ impl ShapeMatching {
         counts
     }
 
-    /// The way out, less what friction holds back of the sliding, as an impulse times dt [kg m].
+    /// The way out, less the part of the sliding that friction holds back, as an impulse times dt [kg m].
     fn push(&self, touch: &Touch, depth: f64, counts: &Counts, now: Substep<'_>) -> Vector64 {
         let gain = |along: Vector64| {
             let of = |sample: Sample| self.response(sample, along, counts, now);
@@ -196,8 +196,8 @@ impl ShapeMatching {
         moved(touch.a) - touch.b.map_or(Vector64::ZERO, moved)
     }
 
-    /// What a round takes out of an overlap [m]: all that came of it in this substep, and a part of what was old,
-    /// or what starts overlapped would be shot apart.
+    /// The part of an overlap that a round removes [m]: all of the overlap that arose in this substep, and a part of
+    /// the older overlap. Full removal would shoot bodies apart that start overlapped.
     fn depth(&self, touch: &Touch, now: Substep<'_>) -> f64 {
         let opened = self.relative(touch, now).dot(touch.normal);
         let (overlap, old) = (touch.old - opened, touch.old.max(0.0));

@@ -4,7 +4,7 @@
 //! Every lattice sample is a particle with a mass of its own, seen by the density of fluids and by the contacts of
 //! particles. An iteration first takes overlap out ([`contacts`]), then moves the samples of each
 //! body towards the best rigid fit of its shape, by a part of the way that is its stiffness. Both keep momentum;
-//! what the fit takes from a spin by moving samples along chords is given back to the velocities.
+//! the spin that the fit takes by moving samples along chords is given back to the velocities.
 
 mod contacts;
 mod member;
@@ -105,14 +105,14 @@ impl ConstraintGroup for ShapeMatching {
         for (k, member) in self.members.iter().enumerate().filter(|(_, member)| member.is_matched()) {
             for (&row, place) in self.rows[k].iter().zip(&self.places[k]) {
                 let moved = *place - wide(now.particles.positions()[row as usize]);
-                // A body that is moved by a script has no member here that may move.
+                // A kinematic body has no member here that may move.
                 debug_assert!(member.inverse_mass > 0.0);
                 out.add(row as usize, vector(moved));
             }
         }
     }
 
-    /// Gives back the spin that the fits took, and damps what moves against the body as a whole.
+    /// Gives back the spin that the fits took, and damps the motion of samples relative to their body.
     fn finish_velocities(&mut self, now: Substep<'_>, velocities: &mut [Vector]) {
         for (k, member) in self.members.iter().enumerate().filter(|(_, member)| member.is_matched()) {
             let (rows, dt) = (&self.rows[k], f64::from(now.dt));
