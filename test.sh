@@ -84,14 +84,14 @@ part documentation env RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-dep
 optional spelling typos typos
 optional licences cargo-deny cargo deny check licenses bans sources
 part "Rust tests" cargo test --workspace --no-fail-fast
-miri
 if [ -n "$full" ]; then
+    miri
     part "long Rust tests" cargo test --workspace --no-fail-fast --release -- --include-ignored
     part "peers build" cargo test --quiet --manifest-path benches/peers/Cargo.toml --target-dir target/peers
-    if command -v valgrind >/dev/null; then
+    if command -v valgrind >/dev/null && [ -f benches/instructions.json ]; then
         part instructions python3 benches/python/instructions.py --check
     else
-        skip instructions "no valgrind here"
+        skip instructions "no valgrind, or no benches/instructions.json"
     fi
 fi
 if command -v python3 >/dev/null; then

@@ -75,6 +75,8 @@ class Keys:
     """How the constraints are solved."""
     contacts: Table
     """How contacts of bodies are solved."""
+    legacy: Table
+    """Options of the papers that the project grew from, for comparison."""
     view: Table
     """What pictures show."""
     expect: Table
