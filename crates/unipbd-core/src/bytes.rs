@@ -1,15 +1,15 @@
-//! Plain values as little-endian bytes, and back without ever reading past the end.
+//! Plain values as little-endian bytes, and a reader that never passes the end.
 
 use crate::math::Vector;
 use crate::phase::Phase;
 
 /// A value of fixed size.
 pub(crate) trait Plain: Copy {
-    /// Bytes it takes.
+    /// Size of the value in bytes.
     const SIZE: usize;
     /// Appends the value.
     fn put(self, out: &mut Vec<u8>);
-    /// Reads the value from exactly [`SIZE`](Self::SIZE) bytes; `None` where they mean nothing.
+    /// Reads the value from exactly [`SIZE`](Self::SIZE) bytes; `None` if they are invalid.
     fn take(bytes: &[u8]) -> Option<Self>;
 }
 
@@ -50,7 +50,7 @@ impl Plain for Phase {
     }
 }
 
-/// What is wrong with the bytes.
+/// Description of the error in the bytes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Damage(pub &'static str);
 
@@ -75,7 +75,7 @@ impl Writer {
     }
 }
 
-/// Takes values off the front.
+/// Reads values from the front.
 pub(crate) struct Reader<'a>(pub &'a [u8]);
 
 impl<'a> Reader<'a> {

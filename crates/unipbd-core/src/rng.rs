@@ -1,4 +1,4 @@
-//! A small random generator whose whole state is one word, so that a saved run goes on the same.
+//! A small random generator with a state of one word, so that a restored run continues identically.
 
 /// SplitMix64 (Steele, Lea & Flood 2014).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -7,7 +7,7 @@ pub struct Rng {
 }
 
 impl Rng {
-    /// A generator for one purpose: streams of different purposes do not overlap in practice.
+    /// A generator for one purpose. Streams of different purposes do not overlap in practice.
     pub fn new(seed: u64, purpose: u64) -> Self {
         Rng { state: mix(seed ^ mix(purpose.wrapping_add(0x9E37_79B9_7F4A_7C15))) }
     }

@@ -1,4 +1,4 @@
-//! Where a particle stands now, by its id.
+//! The current row of a particle, by its id.
 
 use crate::bytes::held;
 
@@ -13,7 +13,7 @@ pub struct RowIndex {
 const GONE: u32 = u32::MAX;
 
 impl RowIndex {
-    /// The row of the particle with this id, if it lives.
+    /// The row of the particle with this id, if it exists.
     pub fn row(&self, id: u32) -> Option<u32> {
         let row = *self.rows.get(id.checked_sub(self.first)? as usize)?;
         (row != GONE).then_some(row)

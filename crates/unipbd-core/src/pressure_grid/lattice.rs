@@ -1,4 +1,4 @@
-//! The box of cells around the liquid, and how a place weighs its nodes.
+//! The box of cells around the liquid, and the interpolation weights of its nodes.
 
 use super::spans::BLOCK;
 use crate::math::{Real, Vector};
@@ -11,10 +11,10 @@ use std::ops::Range;
 const STEP: i32 = 8;
 /// Cells beyond those that hold particles.
 const MARGIN: i32 = 1;
-/// Most cells for each particle, and beside.
+/// Maximum number of cells per particle, and additional cells.
 const CELLS_PER_ROW: f64 = 8.0;
 const CELLS_BESIDE: f64 = 65_536.0;
-/// Farthest cell from the origin that is told from its neighbours.
+/// Farthest cell from the origin with a distinct index.
 const FARTHEST_CELL: Real = 1e8;
 
 /// Cells `0..width` x `0..height` of a grid fixed in space, in rows with at least one more cell around.
@@ -77,7 +77,7 @@ impl Lattice {
         self.origin + (self.lower + Vector::new(i as Real, j as Real) - Vector::ONE) * self.cell
     }
 
-    /// Lays the box around all that is dense.
+    /// Places the box around all dense particles.
     pub fn cover(&mut self, particles: &Particles, walls: &Walls, parallelism: Parallelism) {
         self.origin = walls.anchor();
         let rows = particles.dense();
@@ -92,7 +92,7 @@ impl Lattice {
         let (x, y) = (range(0), range(1));
         let (mut width, mut height) = (f64::from(x.1 - x.0), f64::from(y.1 - y.0));
         let limit = CELLS_PER_ROW * rows as f64 + CELLS_BESIDE;
-        // What flew far off falls freely: the box stays around the lower left of the rest.
+        // Particles far from the rest are in free fall: the box covers only the particles near the lower left.
         if width * height > limit {
             height = height.min((limit / width).max(limit.sqrt()));
             width = width.min(limit / height);
@@ -122,7 +122,7 @@ impl Lattice {
             let node = at as i32;
             (node as usize, at - node as Real)
         };
-        // Faces lie on whole numbers across them, all else on halves; the rim is one cell wide.
+        // Faces lie at integers across their direction, all other nodes at half-integers; the rim is one cell wide.
         let (across, half) = (place + Vector::ONE, place + Vector::splat(0.5));
         let (face, centre) = ([split(across.x), split(across.y)], [split(half.x), split(half.y)]);
         let nodes =
@@ -134,8 +134,8 @@ impl Lattice {
         }
     }
 
-    /// The numbers of all cells whose nodes places between two heights, in cells, may have. One row more than needed:
-    /// a place just below a cell's border may be rounded onto it.
+    /// The indices of all cells with nodes around points between two heights, in cells. It has one extra row:
+    /// a point just below a cell's border may be rounded onto it.
     pub fn cells_between(&self, low: Real, high: Real) -> Range<usize> {
         let rows = (high as usize + 4).min(self.height + 2);
         low as usize * self.stride()..rows * self.stride()

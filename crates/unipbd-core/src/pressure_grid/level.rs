@@ -1,4 +1,4 @@
-//! One grid of the cycle: its couplings, its sweeps, and the ways to the next finer and coarser one.
+//! One grid of the cycle: its couplings, its sweeps, and the transfers to the next finer and coarser grid.
 
 use super::lattice::stride;
 use super::spans::{Spans, by_row};
@@ -7,7 +7,7 @@ use super::{held_by, renew};
 use crate::math::{Real, larger};
 use crate::parallel::Parallelism;
 
-/// Relaxation of the Jacobi sweeps: evens out best what the next grid cannot see.
+/// Relaxation of the Jacobi sweeps: chosen to damp the errors that the next coarser grid cannot resolve.
 const RELAXATION: Real = 0.8;
 
 /// One grid. All columns but those of the room are zero where there is no liquid.
@@ -22,7 +22,7 @@ pub(super) struct Level {
     relax: Vec<Real>,
     /// 1 where there is room for a fluid, 0 within walls.
     pub room: Vec<Real>,
-    /// One over the weights of the coarser cells with room around a cell; 0 where none has.
+    /// Inverse of the weights of the coarser cells with room around a cell; 0 if none has room.
     scale: Vec<Real>,
     pub right_side: Vec<Real>,
     pub x: Vec<Real>,
@@ -53,7 +53,7 @@ impl Level {
         &column[row * self.stride()..][..self.stride()]
     }
 
-    /// The columns that hold anything of the liquid.
+    /// The columns that hold data of the liquid.
     fn columns(&mut self) -> (&Spans, [&mut Vec<Real>; 8]) {
         let Couplings { right, upper, air } = &mut self.couplings;
         let of_solver = [&mut self.total, &mut self.relax, &mut self.right_side, &mut self.x, &mut self.other];
@@ -79,7 +79,7 @@ impl Level {
         columns.into_iter().for_each(|column| spans.clear(column));
     }
 
-    /// Room in cells of four: where any part of them has some.
+    /// Room in a coarse cell: set if any of its four children has room.
     pub fn make_room(&mut self, fine: &Level, parallelism: Parallelism) {
         let mut room = std::mem::take(&mut self.room);
         parallelism.fill(&mut room, |cell| {
@@ -89,14 +89,14 @@ impl Level {
         self.room = room;
     }
 
-    /// The four cells that make up one of the next grid. The last ones may lie beyond this one, whose rim is empty.
+    /// The four children of a cell of the next grid. The last ones may lie outside this grid, whose rim is empty.
     fn parts(&self, i: usize, j: usize) -> [usize; 4] {
         let at = |i: usize, j: usize| self.index(i.min(self.width), j.min(self.height));
         let (i, j) = (2 * i, 2 * j);
         [at(i, j), at(i + 1, j), at(i, j + 1), at(i + 1, j + 1)]
     }
 
-    /// Couplings between cells of four: half of what couples their parts, as they are twice as far apart.
+    /// Couplings between coarse cells: half the couplings of their children, because the distance is doubled.
     pub fn couple(&mut self, fine: &Level, parallelism: Parallelism) {
         let (width, stride, of) = (self.width, self.stride(), &fine.couplings);
         let Couplings { right, upper, air } = &mut self.couplings;
@@ -128,7 +128,7 @@ impl Level {
         });
     }
 
-    /// Columns or rows of the coarser grid that one of this lies in and next to, with the rims.
+    /// Columns or rows of the coarser grid that contain a cell of this grid or are adjacent to it, including the rims.
     #[inline(always)]
     fn beside(place: usize) -> [usize; 2] {
         let at = place.div_ceil(2);
@@ -142,7 +142,7 @@ impl Level {
         (0.5625 * near[at] + 0.1875 * near[next]) + (0.1875 * far[at] + 0.0625 * far[next])
     }
 
-    /// Weighs what the coarser grid will give, by its room.
+    /// Sets the weights of the correction from the coarser grid, from its room.
     pub fn weigh(&mut self, coarse: &Level, parallelism: Parallelism) {
         let mut scale = std::mem::take(&mut self.scale);
         parallelism.fill(&mut scale, |cell| {
@@ -153,7 +153,7 @@ impl Level {
         self.scale = scale;
     }
 
-    /// Adds what the coarser grid found.
+    /// Adds the correction from the coarser grid.
     pub fn prolong(&mut self, coarse: &Level, parallelism: Parallelism) {
         let (stride, scale, relax) = (self.stride(), &self.scale, &self.relax);
         self.spans.each(&mut self.x, parallelism, |first, x| {
@@ -188,12 +188,12 @@ impl Level {
         });
     }
 
-    /// What the couplings make of a field.
+    /// Applies the couplings to a field.
     pub fn image(&self, x: &[Real], out: &mut [Real], parallelism: Parallelism) {
         self.stencil(x, out, parallelism, |x, total, coupled, _| total * x - coupled, [&self.relax; 2]);
     }
 
-    /// What is left of the right side, scaled for the coarser grid, into `other`.
+    /// Writes the residual of the right side, scaled for the coarser grid, into `other`.
     pub fn residual(&mut self, parallelism: Parallelism) {
         let mut other = std::mem::take(&mut self.other);
         let left = |x: Real, total: Real, coupled: Real, [scale, right_side]: [Real; 2]| {

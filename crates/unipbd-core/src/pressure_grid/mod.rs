@@ -1,5 +1,5 @@
 //! A coarse projection before the particle pass: a grid of cells two spacings wide carries the smooth part of the
-//! pressure, and the multipliers of the particles hold only what is left. The number of substeps then follows from
+//! pressure, and the multipliers of the particles hold only the remainder. The number of substeps then follows from
 //! the speed alone, not from the depth.
 //!
 //! A staggered grid (Harlow & Welch 1965) gives changes of velocity to the particles (Brackbill & Ruppel 1986), with
@@ -30,10 +30,10 @@ use transfer::Transfer;
 const CELL: Real = 2.0;
 /// Part of the density error of a cell that the grid takes away in one substep, by moves alone.
 const DENSITY_RELAXATION: Real = 0.06;
-/// Steps of the solver for moves: they take back little, and what is left waits for the next substep. One step leaves
-/// enough to cost momentum (2e-5 of that of a drop drawn out).
+/// Solver steps for the position correction. It is small, and the residual is left to the next substep. With one step
+/// the residual changes the momentum (2e-5 of that of a drop drawn out).
 const STEPS_OF_MOVES: u32 = 2;
-/// Moves of the grid go no farther than this in one substep [spacings].
+/// Limit of the displacement by the grid in one substep [spacings].
 const FARTHEST: Real = 0.1;
 
 /// The coarse projection of a scene of one liquid.
@@ -129,7 +129,7 @@ impl PressureGrid {
         });
     }
 
-    /// What the pressure of the grid pushes against the measured walls in this substep [kg m/s].
+    /// Impulse of the grid pressure on the measured walls in this substep [kg m/s].
     pub(crate) fn push_walls(&self, particles: &Particles, walls: &Walls, impulses: &mut [Vector64]) {
         let Some(inverse_mass) = particles.inverse_mass[..particles.dense()].iter().find(|inverse| **inverse > 0.0)
         else {

@@ -24,7 +24,7 @@ pub(super) struct Multigrid {
 }
 
 impl Multigrid {
-    /// Lays all grids, in the room that walls leave.
+    /// Lays out all grids in the space outside walls.
     pub fn allocate(&mut self, lattice: &Lattice, openings: &Openings, parallelism: Parallelism) {
         let (mut width, mut height, mut count) = (lattice.width, lattice.height, 1);
         while width.max(height) > COARSEST {
@@ -45,7 +45,7 @@ impl Multigrid {
         });
     }
 
-    /// Finds the liquid, by the depths of the cells of the finest grid, whose couplings are then to be set.
+    /// Finds the liquid cells from the depths on the finest grid. The caller then sets the couplings of that grid.
     pub fn finest(&mut self, depth: &[Real]) -> (&Spans, &mut Couplings) {
         // The image is read only where it was just written.
         self.levels[0].spans.clear(&mut self.direction);
@@ -118,7 +118,7 @@ impl Multigrid {
         }
     }
 
-    /// Solves the right side of a level roughly, by all coarser ones.
+    /// Solves approximately for the right side of a level, by a cycle over all coarser levels.
     fn cycle(&mut self, level: usize, parallelism: Parallelism) {
         let last = level + 1 == self.levels.len();
         self.levels[level].sweep_from_zero(if last { LAST_SWEEPS } else { SWEEPS }, parallelism);
@@ -141,7 +141,7 @@ impl Multigrid {
     }
 }
 
-/// Cells of the next grid along an axis of this many: as even a number, so that all cells have their parts.
+/// Cells of the next coarser grid along an axis of this many, rounded up to even so that no cell lacks children.
 fn coarser(cells: usize) -> usize {
     (cells / 2 + 1) & !1
 }

@@ -1,4 +1,4 @@
-//! Which part of each face and cell walls leave open.
+//! The open fraction of each face and cell, outside walls.
 
 use super::held_by;
 use super::lattice::Lattice;
@@ -6,9 +6,9 @@ use crate::math::{Real, Vector, larger};
 use crate::parallel::Parallelism;
 use crate::walls::Walls;
 
-/// Points along each axis at which the surroundings of a cell near a wall are looked at.
+/// Sample points along each axis in the surroundings of a cell near a wall.
 const SAMPLES: usize = 8;
-/// Cells that are less open than this count as that open: what they hold must not weigh too much.
+/// Lower limit of the open fraction of a cell: it limits the weight of the particles in the cell.
 const LEAST: Real = 0.25;
 /// A corner nearer to a wall than this is on it [cells].
 const ON_WALL: Real = 1e-2;
@@ -21,13 +21,13 @@ pub(super) struct Openings {
     pub left: Vec<Real>,
     /// Open part of the lower face.
     pub lower: Vec<Real>,
-    /// One over the open part of the surroundings of the cell, weighted as particles weigh in it; 0 in walls.
+    /// Inverse of the open fraction of the surroundings of the cell, with the weights of particles; 0 inside walls.
     pub inverse: Vec<Real>,
     corners: Vec<Real>,
 }
 
 impl Openings {
-    /// Measures all openings, unless the lattice is still the same: walls stand still. Tells whether it did.
+    /// Measures all openings if the lattice has changed; walls do not move. Returns whether it measured.
     pub fn measure(&mut self, lattice: &Lattice, walls: &Walls, parallelism: Parallelism) -> bool {
         if self.of == *lattice && !self.left.is_empty() {
             return false;
@@ -65,7 +65,7 @@ impl Openings {
     }
 }
 
-/// The part of a straight line outside walls, from the distances of its ends.
+/// The fraction of a line segment outside walls, from the wall distances of its ends.
 fn open_part(a: Real, b: Real) -> Real {
     match (a > 0.0, b > 0.0) {
         (true, true) => 1.0,
@@ -75,7 +75,7 @@ fn open_part(a: Real, b: Real) -> Real {
     }
 }
 
-/// The part outside walls of what weighs in a cell: hats, two cells wide.
+/// The fraction of the kernel of a cell outside walls. The kernel is a hat function, two cells wide.
 fn open_surroundings(centre: Vector, cell: Real, distance: impl Fn(Vector) -> Real) -> Real {
     let step = 2.0 / SAMPLES as Real;
     let place = |k: usize| (k as Real + 0.5) * step - 1.0;

@@ -1,4 +1,4 @@
-//! Where a grid holds liquid: all else stays zero, and costs nothing.
+//! Cells of a grid that hold liquid. All other cells stay zero and are not visited.
 
 use crate::bytes::held;
 use crate::math::Real;
@@ -7,13 +7,13 @@ use std::ops::Range;
 
 /// Spans begin and end at multiples of this many cells, as rows do.
 pub(super) const BLOCK: usize = 8;
-/// Gaps of no more cells are spanned: that is cheaper than to begin anew.
+/// Gaps of at most this many cells are included in a span: this is cheaper than a new span.
 const GAP: u32 = 16;
 
-/// Runs of cells that hold all liquid, by chunk. They may go on from row to row, over the rim.
+/// Runs of cells that include all liquid cells, by chunk. A run may continue into the next row, across the rim.
 #[derive(Default)]
 pub(super) struct Spans {
-    /// Which blocks of cells count.
+    /// Flags of the blocks of cells that are included.
     marks: Vec<bool>,
     /// First cell of each span, and the one after its last.
     spans: Vec<[u32; 2]>,
@@ -70,7 +70,7 @@ impl Spans {
         self.collect();
     }
 
-    /// Finds the cells of a grid half as fine whose parts lie in the spans of a finer one.
+    /// Marks the cells of a coarser grid (factor two) whose child cells lie in the spans of the finer grid.
     pub fn coarsen(&mut self, finer: &Spans, finer_stride: usize, stride: usize, cells: usize) {
         self.start(cells);
         let coarser = |k: usize| k.div_ceil(2);
@@ -140,14 +140,14 @@ impl Spans {
         self.loops(parallelism).reduce(a.len(), of_chunk, |a, b| a + b)
     }
 
-    /// Sets a column to zero where it may be anything else.
+    /// Sets a column to zero where it may be nonzero.
     pub fn clear<T: Default + Copy>(&self, column: &mut [T]) {
         for [start, end] in &self.spans {
             column[*start as usize..*end as usize].fill(T::default());
         }
     }
 
-    /// Nothing counts any more: the columns are new.
+    /// Clears all spans: the columns are new.
     pub fn forget(&mut self) {
         self.spans.clear();
         self.ends.clear();

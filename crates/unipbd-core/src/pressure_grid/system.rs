@@ -1,4 +1,4 @@
-//! The linear system of the grid: which cells are liquid, how they are coupled, and what is asked of them.
+//! The linear system of the grid: liquid cells, couplings between cells, and right sides.
 
 use super::lattice::Lattice;
 use super::openings::Openings;
@@ -11,17 +11,17 @@ use crate::parallel::Parallelism;
 
 /// Least distance of the free surface from a cell, as a part of the distance of two cells.
 const NEAREST_SURFACE: Real = 0.1;
-/// What holds cells without any air near: a hundred-thousandth of their couplings.
+/// Diagonal term that keeps cells without air neighbours regular: 1e-5 of their couplings.
 const HELD: Real = 1e-5;
-/// Part of what paths squeeze together, as they curve within a substep, that is looked ahead to.
+/// Fraction of the compression by curved paths within a substep that the right side anticipates.
 const CURVATURE: Real = 0.5;
-/// Cells within the liquid that are filled less than this are drawn together: spray that fell into itself is no
-/// liquid yet...
+/// Liquid cells with a lower fill fraction than this are contracted: the cell contains merged spray, not a continuous
+/// liquid...
 const POROUS: Real = 0.9;
-/// ...where it is as full all around: across a surface the neighbours differ by more than this.
+/// ...if the fill is uniform around the cell: near a free surface the fill of opposite neighbours differs by more.
 const SLANTED: Real = 0.3;
-/// A place feels the grid wholly where at least this part of its nodes has liquid beside: half above the surface, less
-/// beyond.
+/// A point gets the full grid correction if at least this fraction of its nodes is next to liquid. It is half at
+/// the free surface, less above it.
 const WHOLLY_FELT: Real = 0.5;
 
 /// Couplings by cell; all are zero where there is no liquid.
@@ -43,11 +43,11 @@ pub(super) struct System {
     /// Velocity along x at left faces, and along y at lower ones [m/s].
     along_x: Vec<Real>,
     along_y: Vec<Real>,
-    /// What flows together in each cell [m/s].
+    /// Negative divergence of the velocity in each cell: the inflow [m/s].
     pub divergence: Vec<Real>,
-    /// What each cell holds too much [m].
+    /// Excess fill of each cell [m].
     pub excess: Vec<Real>,
-    /// What is found for both: its differences are changes of velocity [m/s] and moves [m].
+    /// Solutions of both systems: their differences are velocity changes [m/s] and displacements [m].
     pub pressure: Vec<Real>,
     pub potential: Vec<Real>,
     /// At left and lower faces: change of velocity, move, and 1 where there is liquid.
@@ -89,7 +89,7 @@ impl System {
                 *depth = std::array::from_fn(of);
             }
         });
-        // Around the box there is nothing, whatever spilled over.
+        // Cells around the box are empty, even if particle weights reach them.
         let (stride, cells) = (lattice.stride(), lattice.len());
         let sides = (0..cells).step_by(stride).flat_map(|row| [row, row + lattice.width + 1]);
         for rim in sides.chain(0..stride).chain(cells - stride..cells) {
@@ -138,8 +138,8 @@ impl System {
         });
     }
 
-    /// Sets what the pressure is to undo within a substep of length `dt` [s], and the part of what is too much that
-    /// moves are to take back.
+    /// Sets the divergence to be removed by the pressure within a substep of length `dt` [s], and the fraction of the
+    /// excess fill to be removed by displacements.
     pub fn assemble_right_side(
         &mut self,
         lattice: &Lattice,
@@ -173,7 +173,7 @@ impl System {
         });
     }
 
-    /// Takes both solutions to the faces.
+    /// Computes the differences of both solutions at the faces.
     pub fn difference(&mut self, lattice: &Lattice, openings: &Openings, spans: &Spans, parallelism: Parallelism) {
         let (depth, pressure, potential) = (&self.depth, &self.pressure, &self.potential);
         let open = [&openings.left, &openings.lower];
@@ -191,7 +191,7 @@ impl System {
                 Some(Quad::new(gain * of_pressure, gain * of_potential, 1.0, 0.0))
             };
             let inner = 2 * back..lattice.len() - back;
-            // A wall is felt as the next face away from it is.
+            // A wall face gets the value of the next face away from the wall.
             let felt = |k: usize| match inner.contains(&k) {
                 false => None,
                 true if open[k] > 0.0 => difference(k),
@@ -207,7 +207,7 @@ impl System {
         }
     }
 
-    /// What particles feel.
+    /// The solution as interpolated to the particles.
     pub fn felt(&self, lattice: &Lattice) -> Felt<'_> {
         Felt { lattice: *lattice, faces: [&self.faces[0], &self.faces[1]] }
     }
@@ -264,7 +264,7 @@ pub(super) struct Felt<'a> {
 }
 
 impl Felt<'_> {
-    /// The change of velocity [m/s] and the move [m] that a place feels.
+    /// The velocity change [m/s] and the displacement [m] at a point.
     #[inline(always)]
     pub fn at(&self, x: Vector) -> (Vector, Vector) {
         let place = self.lattice.place(x);
@@ -291,14 +291,14 @@ impl Flow<'_> {
         [cell - 1, cell + 1, cell - self.stride, cell + self.stride]
     }
 
-    /// What flows out of a cell.
+    /// Outflow of a cell.
     fn out_of(&self, cell: usize, open: &Openings) -> Real {
         let (right, upper) = (cell + 1, cell + self.stride);
         (self.u[right] * open.left[right] - self.u[cell] * open.left[cell])
             + (self.v[upper] * open.lower[upper] - self.v[cell] * open.lower[cell])
     }
 
-    /// The trace of the squared velocity gradient, in cells: what paths that curve squeeze together.
+    /// The trace of the squared velocity gradient, in cell units: the compression by curved paths.
     fn squeeze(&self, cell: usize) -> Real {
         let middle =
             |cell: usize| Vector::new(self.u[cell] + self.u[cell + 1], self.v[cell] + self.v[cell + self.stride]) * 0.5;
@@ -309,7 +309,7 @@ impl Flow<'_> {
     }
 }
 
-/// Distance from a flat free surface, in cells, of a cell that is filled so far; exact along an axis.
+/// Distance from a flat free surface, in cells, of a cell with this fill fraction; exact along an axis.
 #[inline(always)]
 fn depth_of(fill: Real) -> Real {
     let missing = 1.0 - fill;
@@ -322,7 +322,7 @@ fn depth_of(fill: Real) -> Real {
     }
 }
 
-/// What a pressure beside air counts: it is zero where the surface is, not at the centre of the next cell.
+/// Ghost-pressure factor next to air: the pressure is zero at the free surface, not at the centre of the next cell.
 fn ghost(liquid: Real, air: Real) -> Real {
     1.0 / (liquid / (liquid - air)).clamp(NEAREST_SURFACE, 1.0)
 }

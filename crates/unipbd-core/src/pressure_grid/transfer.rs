@@ -1,4 +1,4 @@
-//! From particles to the nodes of the grid, and back to any place.
+//! Transfer from particles to grid nodes, and interpolation from grid nodes to any point.
 
 use super::lattice::{Lattice, Nodes};
 use super::renew;
@@ -8,16 +8,16 @@ use crate::parallel::{CHUNK_ROWS, Parallelism};
 use crate::particles::Particles;
 use std::ops::Range;
 
-/// Rows that one task spreads, and most tasks: fixed, so that sums do not depend on the number of threads.
+/// Rows per task, and the maximum number of tasks: fixed, so that sums do not depend on the number of threads.
 const TASK_ROWS: usize = 16 * CHUNK_ROWS;
 const MOST_TASKS: usize = 32;
-/// Density errors below this are those of a surface, not of a gap.
+/// Lower density errors than this belong to a free surface, not to a gap.
 const SURFACE: Real = -0.04;
 
 /// Sums of the particles at the nodes of a grid: a value times weights, and the weights.
 pub(super) type Sums = Vec<[Real; 2]>;
 
-/// What the particles give to the grid.
+/// Weighted sums of the particles at the grid nodes.
 #[derive(Default)]
 pub(super) struct Transfer {
     tasks: Vec<Task>,
@@ -31,7 +31,7 @@ pub(super) struct Fields {
     pub left: Sums,
     /// Velocity along y at lower faces.
     pub lower: Sums,
-    /// Density error at centres; the weights are what of the cell is filled.
+    /// Density error at centres; the weights are the filled fraction of the cell.
     pub centre: Sums,
 }
 
@@ -84,7 +84,7 @@ impl Transfer {
     }
 }
 
-/// Adds up what all tasks found for the cells from `first` on.
+/// Adds up the sums of all tasks for the cells from `first` on.
 fn add_up(tasks: &[Task], first: usize, out: &mut [[Real; 2]], of: impl Fn(&Fields) -> &Sums) {
     out.fill([0.0; 2]);
     for task in tasks {
@@ -105,7 +105,7 @@ impl Fields {
 }
 
 impl Task {
-    /// The cells that its rows may give to.
+    /// The cells that can receive contributions from its rows.
     fn reached(&self, lattice: &Lattice, particles: &Particles) -> Range<usize> {
         let (mut low, mut high) = (lattice.height as Real, 0.0);
         for x in &particles.start[self.rows.clone()] {
@@ -152,7 +152,7 @@ fn add(sums: &mut [[Real; 2]], first: usize, stride: usize, nodes: Nodes, [value
     pair(at + stride, nodes.up);
 }
 
-/// The weighted mean at a node; 0 where nothing weighs.
+/// The weighted mean at a node; 0 if the weight is zero.
 #[inline(always)]
 pub(super) fn mean([value, weight]: [Real; 2]) -> Real {
     if weight > 0.0 { value / weight } else { 0.0 }

@@ -1,11 +1,11 @@
-//! All bodies of a run: state as columns, everything else as it was specified.
+//! All bodies of a run: state as columns, and the specification of each body.
 
 use super::{Body, BodyKind, BodySpec, Elasticity, MassSpec, Motion, Pose, Rotation, Twist};
 use crate::math::Vector64;
 use crate::shapes::{Core, Shape, ShapeError};
 use std::f64::consts::{PI, TAU};
 
-/// How a body answers to a push: its inverse mass and inertia, both 0 for what nothing moves.
+/// Response of a body to a push: its inverse mass and inertia, both 0 for an immovable body.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct InverseMass {
     /// Inverse mass [1/kg].
@@ -14,15 +14,15 @@ pub struct InverseMass {
     pub angular: f64,
 }
 
-/// What a body keeps for life.
+/// Constant data of a body.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 struct Script {
     /// Pose of the outline's origin at time zero.
     start: Pose,
-    /// Origin of the outline, seen from the centre of mass in body coordinates.
+    /// Origin of the outline relative to the centre of mass, in body coordinates.
     origin: Vector64,
     motion: Motion,
-    /// Velocity that a caller gave a kinematic body: it replaces the script from then on.
+    /// Velocity of a kinematic body set by a caller: it replaces the prescribed motion from then on.
     driven: Option<Twist>,
     gravity_factor: f64,
 }
@@ -36,17 +36,17 @@ pub struct Bodies {
     pub(crate) velocities: Vec<Twist>,
     /// Displacement u over the running substep.
     pub(crate) displacements: Vec<Twist>,
-    /// What each body answers with when awake.
+    /// Inverse mass of each body when awake.
     pub(crate) awake_responses: Vec<InverseMass>,
-    /// The same, and 0 while asleep.
+    /// The same, but 0 while asleep.
     pub(crate) inverse_masses: Vec<InverseMass>,
     pub(crate) asleep: Vec<bool>,
-    /// How those deform that are particles, drawn back to their shape: their pose only follows.
+    /// Elasticity of bodies made of particles with shape matching: their pose follows the particles.
     matched: Vec<Option<Elasticity>>,
-    /// Contacts and joints: sum of impulses since the frame began [N s], [N m s].
+    /// Contacts and joints: sum of impulses since the start of the frame [N s], [N m s].
     pub(crate) contact_loads: Vec<Twist>,
     fluid_loads: Vec<Twist>,
-    /// Whether the fluid or a caller has pushed the body since the frame began.
+    /// Whether the fluid or a caller has pushed the body since the start of the frame.
     pub(crate) pushed: Vec<bool>,
     pub(crate) cores: Vec<Core>,
     /// Largest distance of a point of the body from its centre of mass [m].
@@ -58,7 +58,7 @@ pub struct Bodies {
 }
 
 impl Bodies {
-    /// No bodies yet; `spacing` is the rest distance of particles [m].
+    /// An empty set; `spacing` is the rest distance of particles [m].
     pub fn new(spacing: f64) -> Bodies {
         Bodies { spacing, ..Bodies::default() }
     }
@@ -68,7 +68,7 @@ impl Bodies {
         self.poses.len()
     }
 
-    /// Whether there is none.
+    /// Whether the set is empty.
     pub fn is_empty(&self) -> bool {
         self.poses.is_empty()
     }
@@ -120,7 +120,7 @@ impl Bodies {
         Ok(id as u32)
     }
 
-    /// Whether both hold bodies of the same shapes and names, perhaps at different times.
+    /// Whether both sets hold bodies of the same shapes and names, possibly at different times.
     pub(crate) fn is_like(&self, other: &Bodies) -> bool {
         let bodies = self.len();
         let same_kind = self.matched == other.matched;
@@ -140,7 +140,7 @@ impl Bodies {
             && self.views.iter().zip(&other.views).all(same)
     }
 
-    /// The bodies as they are read from outside, in id order; up to date after [`Bodies::finish_frame`].
+    /// Readable state of the bodies, in id order; up to date after [`Bodies::finish_frame`].
     pub fn views(&self) -> &[Body] {
         &self.views
     }
@@ -150,7 +150,7 @@ impl Bodies {
         self.poses[id as usize]
     }
 
-    /// Pose at the end of the running substep, as far as it is known.
+    /// Predicted pose at the end of the running substep.
     pub fn predicted_pose(&self, id: u32) -> Pose {
         let (pose, moved) = (self.poses[id as usize], self.displacements[id as usize]);
         Pose { position: pose.position + moved.linear, angle: pose.angle + moved.angular }
@@ -161,12 +161,12 @@ impl Bodies {
         self.velocities[id as usize]
     }
 
-    /// Velocity of the body's matter at a point of the world [m/s].
+    /// Velocity of the body at a point in world coordinates [m/s].
     pub fn velocity_at(&self, id: u32, point: Vector64) -> Vector64 {
         self.velocities[id as usize].at(point - self.poses[id as usize].position)
     }
 
-    /// Displacement in the running substep of the body's matter at `arm` from its centre of mass [m].
+    /// Displacement of the body in the running substep at `arm` from its centre of mass [m].
     pub(crate) fn displacement_at(&self, id: u32, arm: Vector64) -> Vector64 {
         self.displacements[id as usize].at(arm)
     }
@@ -176,7 +176,7 @@ impl Bodies {
         &self.views[id as usize].samples
     }
 
-    /// Inverse mass and inertia as constraints must see them: 0 for what sleeps or is scripted.
+    /// Inverse mass and inertia for constraints: 0 for a sleeping or kinematic body.
     pub fn response(&self, id: u32) -> InverseMass {
         self.inverse_masses[id as usize]
     }
@@ -191,12 +191,12 @@ impl Bodies {
         self.views[id].kind == BodyKind::Dynamic && self.matched[id].is_none()
     }
 
-    /// How a body deforms whose shape is matched.
+    /// Elasticity of a body with shape matching.
     pub(crate) fn elasticity(&self, id: usize) -> Option<Elasticity> {
         self.matched[id]
     }
 
-    /// A body that is particles is where they are: its pose and velocity follow, and its outline where it is soft.
+    /// Sets pose and velocity of a body made of particles from its particles, and the outline of a soft body.
     pub(crate) fn follow(&mut self, id: usize, pose: Pose, velocity: Twist, outline: Option<Vec<Vector64>>) {
         let turn = (pose.angle - self.poses[id].angle + PI).rem_euclid(TAU) - PI;
         self.poses[id] = Pose { angle: self.poses[id].angle + turn, ..pose };
@@ -204,7 +204,7 @@ impl Bodies {
         self.views[id].outline = outline.unwrap_or_else(|| std::mem::take(&mut self.views[id].outline));
     }
 
-    /// Whether it may be somewhere else after the next substep.
+    /// Whether it may move in the next substep.
     #[inline]
     pub(crate) fn is_active(&self, id: usize) -> bool {
         match self.views[id].kind {
@@ -214,7 +214,7 @@ impl Bodies {
         }
     }
 
-    /// Predicts the displacements of a substep: u = dt v + dt^2 g, or what the script says.
+    /// Predicts the displacements of a substep: u = dt v + dt^2 g, or the prescribed motion.
     /// `time` is the start of the substep [s].
     pub fn predict(&mut self, dt: f64, time: f64, gravity: Vector64) {
         for id in 0..self.len() {
@@ -243,14 +243,14 @@ impl Bodies {
         Twist { linear: origin.apply(-script.origin) - now.position, angular: origin.angle - now.angle }
     }
 
-    /// Moves a body within the running substep: adds to its displacement [m], [rad].
+    /// Adds to the displacement of a body in the running substep [m], [rad].
     pub fn push(&mut self, id: u32, linear: Vector64, angular: f64) {
         self.displacements[id as usize] += Twist { linear, angular };
         self.pushed[id as usize] = true;
     }
 
-    /// Loads a body with a force and a torque about its centre of mass over a substep of length `dt`,
-    /// and counts both as the fluid's. Works for any kind; only dynamic bodies move.
+    /// Applies a force and a torque about the centre of mass to a body over a substep of length `dt`,
+    /// and records both as fluid loads. Accepts any kind of body; only dynamic bodies move.
     pub fn load(&mut self, id: u32, force: Vector64, torque: f64, dt: f64) {
         let response = self.inverse_masses[id as usize];
         self.push(id, force * (response.linear * dt * dt), torque * response.angular * dt * dt);
@@ -269,12 +269,12 @@ impl Bodies {
         }
     }
 
-    /// Ends a frame of length `frame_time` [s]: mean loads, and views brought up to date.
+    /// Ends a frame of length `frame_time` [s]: updates mean loads and the readable state.
     pub fn finish_frame(&mut self, frame_time: f64) {
         for id in 0..self.len() {
             let fluid = std::mem::take(&mut self.fluid_loads[id]).scaled(1.0 / frame_time);
             let contact = std::mem::take(&mut self.contact_loads[id]).scaled(1.0 / frame_time);
-            // A sleeping body keeps the loads it fell asleep with: nothing has changed.
+            // A sleeping body keeps the loads from the time it fell asleep.
             if !self.asleep[id] || !self.views[id].asleep {
                 (self.views[id].fluid_force, self.views[id].fluid_torque) = (fluid.linear, fluid.angular);
                 (self.views[id].contact_force, self.views[id].contact_torque) = (contact.linear, contact.angular);
@@ -284,7 +284,7 @@ impl Bodies {
         }
     }
 
-    /// Puts a body to sleep: no velocity, and pushes do not move it.
+    /// Puts a body to sleep: its velocity is zero, and pushes do not move it.
     pub(crate) fn fall_asleep(&mut self, id: usize) {
         self.asleep[id] = true;
         self.inverse_masses[id] = InverseMass::default();
@@ -298,8 +298,8 @@ impl Bodies {
         self.inverse_masses[id] = self.awake_responses[id];
     }
 
-    /// Sets the velocity of a body. A dynamic one that sleeps is woken with its island at the next substep; a
-    /// kinematic one keeps the velocity, whatever its script says, until it is given another.
+    /// Sets the velocity of a body. A sleeping dynamic body is woken with its island at the next substep; a
+    /// kinematic body keeps this velocity in place of its prescribed motion until another velocity is set.
     pub fn set_velocity(&mut self, id: u32, velocity: Twist) {
         let id = id as usize;
         match self.views[id].kind {
@@ -311,8 +311,8 @@ impl Bodies {
         self.refresh_view(id);
     }
 
-    /// Lets a force [N] and a torque about the centre of mass [N m] act on a dynamic body over the
-    /// substep of length `dt` that is to come. One that sleeps is woken.
+    /// Applies a force [N] and a torque about the centre of mass [N m] to a dynamic body over the
+    /// next substep of length `dt`. A sleeping body is woken.
     pub fn accelerate(&mut self, id: u32, force: Vector64, torque: f64, dt: f64) {
         let response = self.awake_responses[id as usize];
         let change = Twist { linear: force * (response.linear * dt), angular: torque * (response.angular * dt) };

@@ -68,12 +68,12 @@ impl std::ops::SubAssign for Twist {
     }
 }
 
-/// A rigid body, as it can be read from outside.
+/// Readable state of a rigid body.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Body {
     /// Name given in the scene.
     pub name: String,
-    /// How it moves.
+    /// Type of motion.
     pub kind: BodyKind,
     /// Centre of mass [m].
     pub position: Vector64,
@@ -93,13 +93,13 @@ pub struct Body {
     pub radius: f64,
     /// Lattice samples in body coordinates [m].
     pub samples: Vec<Vector64>,
-    /// Area each sample stands for [m^2].
+    /// Area per sample [m^2].
     pub sample_area: f64,
     /// Friction and restitution.
     pub surface: Surface,
-    /// Whom it collides with.
+    /// Collision filter.
     pub filter: CollisionFilter,
-    /// Whether it is held still until something wakes it.
+    /// Whether it is asleep: held still until it is woken.
     pub asleep: bool,
     /// Force of the fluid over the last frame, mean [N].
     pub fluid_force: Vector64,

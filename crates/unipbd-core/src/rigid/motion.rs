@@ -1,23 +1,23 @@
-//! Scripted motion of kinematic bodies.
+//! Prescribed motion of kinematic bodies.
 
 use super::{Pose, Twist};
 use crate::math::Vector64;
 use std::f64::consts::TAU;
 
-/// A script: where the origin of a kinematic body is at each time.
+/// A prescribed motion: the position of the origin of a kinematic body as a function of time.
 #[derive(Clone, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Motion {
-    /// It stays where it started.
+    /// The body stays at its start pose.
     #[default]
     Still,
-    /// It moves and turns at constant rates.
+    /// The body moves and rotates at constant rates.
     Steady {
         /// Velocity [m/s].
         velocity: Vector64,
         /// Angular velocity, counter-clockwise [rad/s].
         spin: f64,
     },
-    /// It swings about its start as a sine.
+    /// The body oscillates about its start pose as a sine.
     Oscillate {
         /// Largest displacement [m].
         amplitude: Vector64,
@@ -28,19 +28,19 @@ pub enum Motion {
         /// Phase at time zero [rad].
         phase: f64,
     },
-    /// It follows waypoints in straight lines; before the first and after the last it rests.
+    /// The body follows waypoints in straight lines; before the first and after the last it rests.
     Path {
         /// Waypoints by increasing time.
         waypoints: Vec<Waypoint>,
-        /// What happens after the last.
+        /// Behaviour after the last waypoint.
         repeat: Repeat,
     },
 }
 
-/// A station of a path.
+/// A waypoint of a path.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Waypoint {
-    /// When [s].
+    /// Time [s].
     pub time: f64,
     /// Displacement from the start [m].
     pub offset: Vector64,
@@ -48,18 +48,18 @@ pub struct Waypoint {
     pub turn: f64,
 }
 
-/// What a path does after its last waypoint.
+/// Behaviour of a path after its last waypoint.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Repeat {
     /// Rest there.
     #[default]
     Once,
-    /// Begin anew at the first waypoint.
+    /// Restart at the first waypoint.
     Loop,
 }
 
 impl Motion {
-    /// Whether the script never moves anything.
+    /// Whether the body never moves.
     pub fn is_still(&self) -> bool {
         *self == Motion::Still
     }

@@ -1,14 +1,14 @@
-//! What a body is made from.
+//! The specification of a body.
 
 use super::{BodyKind, Motion, Pose, Twist};
 use crate::shapes::Shape;
 
-/// How a surface rubs and rebounds.
+/// Friction and restitution of a surface.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Surface {
-    /// Coulomb coefficient below which a contact sticks.
+    /// Coulomb coefficient of static friction.
     pub static_friction: f64,
-    /// Coulomb coefficient of a contact that slides.
+    /// Coulomb coefficient of kinetic friction.
     pub kinetic_friction: f64,
     /// Rolling resistance of a disc: largest moment over (normal force x radius).
     pub rolling_friction: f64,
@@ -33,14 +33,14 @@ impl Surface {
         Surface { restitution, ..self }
     }
 
-    /// What friction holds back of a sliding that the impulse `stop` would end, under this normal impulse
+    /// The friction impulse under this normal impulse; the impulse `stop` would end the sliding
     /// (Macklin et al. 2014, equation 24).
     pub fn held_back(&self, stop: f64, normal: f64) -> f64 {
         let (sticks, drag) = (self.static_friction * normal, self.kinetic_friction * normal);
         if stop.abs() < sticks { stop } else { stop.clamp(-drag, drag) }
     }
 
-    /// What holds between two surfaces: the geometric mean of the friction coefficients (one smooth
+    /// The combined coefficients of two surfaces: the geometric mean of the friction coefficients (one smooth
     /// side makes a smooth contact), the larger restitution, the larger rolling friction.
     pub fn combined(&self, other: &Surface) -> Surface {
         let kinetic = (self.kinetic_friction * other.kinetic_friction).sqrt();
@@ -53,7 +53,7 @@ impl Surface {
     }
 }
 
-/// Who collides with whom: both must list a layer the other is in.
+/// Collision filter: two bodies collide if each of them lists a layer of the other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct CollisionFilter {
     /// Layers the body is in, one bit each.
@@ -75,7 +75,7 @@ impl CollisionFilter {
     }
 }
 
-/// How heavy a body is.
+/// Mass of a body, direct or by density.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum MassSpec {
     /// Mass per area [kg/m^2].
@@ -84,12 +84,12 @@ pub enum MassSpec {
     Mass(f64),
 }
 
-/// How a body whose shape is matched deforms.
+/// Elasticity of a body with shape matching.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Elasticity {
-    /// Part of its deformation that it takes back in a 60th of a second, 0 to 1.
+    /// Fraction of its deformation that is recovered in 1/60 s, 0 to 1.
     pub stiffness: f64,
-    /// Part of its wobble that it loses in a 60th of a second, 0 to 1.
+    /// Fraction of its oscillation that is damped in 1/60 s, 0 to 1.
     pub damping: f64,
 }
 
@@ -103,12 +103,12 @@ pub enum Rotation {
     Locked,
 }
 
-/// What a body is made from.
+/// The specification of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct BodySpec {
     /// Name.
     pub name: String,
-    /// How it moves.
+    /// Type of motion.
     pub kind: BodyKind,
     /// Outline; its origin is placed at the pose, wherever the centre of mass is.
     pub shape: Shape,
@@ -116,19 +116,19 @@ pub struct BodySpec {
     pub pose: Pose,
     /// Velocity of the centre of mass and angular velocity at the start.
     pub velocity: Twist,
-    /// How heavy it is.
+    /// Mass or density.
     pub mass: MassSpec,
     /// Friction and restitution.
     pub surface: Surface,
-    /// Whom it collides with.
+    /// Collision filter.
     pub filter: CollisionFilter,
     /// Whether it may turn.
     pub rotation: Rotation,
-    /// How a dynamic body whose shape is matched deforms; none for a rigid pose.
+    /// Elasticity of a dynamic body with shape matching; `None` for a rigid body.
     pub matched: Option<Elasticity>,
     /// Factor on gravity.
     pub gravity_factor: f64,
-    /// Script of a kinematic body, for the origin of its outline.
+    /// Prescribed motion of a kinematic body, for the origin of its outline.
     pub motion: Motion,
 }
 

@@ -1,4 +1,4 @@
-//! Static walls: what bodies and particles cannot enter.
+//! Static walls: solids that bodies and particles cannot enter.
 
 use super::Surface;
 use crate::math::Vector64;
@@ -7,7 +7,7 @@ use crate::shapes::{Nearest, Shape, nearest_on_polygon};
 /// The geometry of a wall.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Boundary {
-    /// Everything behind an endless straight line is solid.
+    /// A half-plane: the side of a straight line behind its normal is solid.
     HalfPlane {
         /// A point on the line [m].
         point: Vector64,
@@ -28,7 +28,7 @@ pub enum Boundary {
 /// A static wall.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Wall {
-    /// Where it is.
+    /// Its geometry.
     pub boundary: Boundary,
     /// Friction and restitution.
     pub surface: Surface,

@@ -9,7 +9,7 @@ use crate::math::Vector64;
 /// The rounded convex pieces of a solid.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Core {
-    /// How far the surface lies outside the pieces [m].
+    /// Distance of the surface outside the pieces [m].
     pub radius: f64,
     /// Convex pieces; a disc is one piece with one vertex.
     pub pieces: Vec<ConvexPiece>,
@@ -24,7 +24,7 @@ pub struct ConvexPiece {
     pub normals: Vec<Vector64>,
     /// Whether that edge is part of the outline, and not a cut through the solid.
     pub outer: Vec<bool>,
-    /// Whether the vertex can touch something: convex in the outline, and not listed by another piece.
+    /// Whether the vertex can be in contact: convex in the outline, and not listed by another piece.
     pub sampled: Vec<bool>,
 }
 
@@ -35,7 +35,7 @@ pub(super) fn core(shape: &Shape, radius: f64) -> Core {
     }
 }
 
-/// Halves the radius until the outline moved inwards is still the same polygon, only smaller.
+/// Halves the radius until the inset outline is the same polygon, only smaller.
 fn polygon_core(corners: &[Vector64], radius: f64) -> Core {
     let radii = (0..6u32).map(|halvings| radius / f64::from(1 << halvings));
     let fitting = radii.filter(|&r| r > 0.0).find_map(|r| Some((r, inset(corners, r)?)));
@@ -67,7 +67,7 @@ impl ConvexPiece {
     }
 }
 
-/// The outline moved inwards by `radius`, or nothing if an edge would shrink below a quarter.
+/// The outline moved inwards by `radius`, or `None` if an edge would shrink below a quarter.
 fn inset(corners: &[Vector64], radius: f64) -> Option<Vec<Vector64>> {
     let n = corners.len();
     let normal = |k: usize| -(corners[(k + 1) % n] - corners[k % n]).perp().normalize();

@@ -1,4 +1,4 @@
-//! Convex decomposition: ear clipping, then removal of the diagonals that convexity does not need
+//! Convex decomposition: ear clipping, then removal of the diagonals that are not needed for convexity
 //! (Hertel & Mehlhorn 1983: at most four times the least number of pieces).
 
 use crate::math::Vector64;
@@ -21,7 +21,7 @@ pub fn convex_decomposition(corners: &[Vector64]) -> Vec<Vec<usize>> {
     pieces
 }
 
-/// Cuts off one ear after the other; the widest first, so that slivers are rare.
+/// Cuts off the ears one by one, the widest first, so that slivers are rare.
 fn triangulate(corners: &[Vector64]) -> Vec<Vec<usize>> {
     let mut left: Vec<usize> = (0..corners.len()).collect();
     let mut triangles = Vec::new();
@@ -37,7 +37,7 @@ fn triangulate(corners: &[Vector64]) -> Vec<Vec<usize>> {
     triangles
 }
 
-/// Smallest height over longest side of an ear; none if the corner is reflex or the ear not empty.
+/// Smallest height over longest side of an ear; `None` if the corner is reflex or the ear not empty.
 fn ear_quality(corners: &[Vector64], left: &[usize], triple: [usize; 3]) -> Option<f64> {
     let [a, b, c] = triple.map(|k| corners[k]);
     let doubled = (b - a).perp_dot(c - b);
@@ -49,7 +49,7 @@ fn ear_quality(corners: &[Vector64], left: &[usize], triple: [usize; 3]) -> Opti
     (doubled > 0.0 && !blocked).then_some(doubled / longest)
 }
 
-/// The union of two pieces over a common edge, if there is one and the union is convex.
+/// The union of two pieces with a common edge, if there is one and the union is convex.
 fn merged(corners: &[Vector64], first: &[usize], second: &[usize]) -> Option<Vec<usize>> {
     let (n, m) = (first.len(), second.len());
     let (i, j) = (0..n).find_map(|i| {

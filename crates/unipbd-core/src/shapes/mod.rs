@@ -1,5 +1,5 @@
 //! Shapes in the plane: outlines, their areas and moments, signed distances, lattice samples, and
-//! the rounded convex cores that contacts are found with.
+//! the rounded convex cores used for contacts.
 
 mod core_pieces;
 mod decompose;
@@ -23,11 +23,11 @@ pub enum Shape {
         /// Radius [m].
         radius: f64,
     },
-    /// A simple polygon, convex or not: corners in order, either way round [m].
+    /// A simple polygon, convex or not: corners in order, of either orientation [m].
     Polygon(Vec<Vector64>),
 }
 
-/// What makes a shape unusable.
+/// Reasons why a shape is invalid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum ShapeError {
     /// A coordinate or radius is not finite.
@@ -53,7 +53,7 @@ impl std::fmt::Display for ShapeError {
 
 impl std::error::Error for ShapeError {}
 
-/// The nearest point of a boundary, seen from a query point.
+/// The nearest point of a boundary to a query point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
     /// Distance to the boundary, negative inside the solid [m].
@@ -76,7 +76,7 @@ impl Shape {
         Shape::Polygon((0..corners).map(corner).collect())
     }
 
-    /// Refuses shapes that nothing can be computed from.
+    /// Returns an error if the shape is invalid.
     pub fn check(&self) -> Result<(), ShapeError> {
         match self {
             Shape::Disc { radius } if !radius.is_finite() => Err(ShapeError::NotFinite),
@@ -113,7 +113,7 @@ impl Shape {
         }
     }
 
-    /// Radius of the smallest disc about the origin that holds the shape [m].
+    /// Radius of the smallest disc about the origin that contains the shape [m].
     pub fn bounding_radius(&self) -> f64 {
         match self {
             Shape::Disc { radius } => *radius,
@@ -146,7 +146,7 @@ impl Shape {
         sampling::fill(self, spacing)
     }
 
-    /// The rounded convex pieces by which the shape touches others, at most `radius` round.
+    /// The rounded convex pieces used for contacts, with a contact radius of at most `radius`.
     pub fn core(&self, radius: f64) -> Core {
         core_pieces::core(self, radius)
     }

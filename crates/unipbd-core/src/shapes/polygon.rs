@@ -1,4 +1,4 @@
-//! Simple polygons: moments, inside test, signed distance, tidying.
+//! Simple polygons: moments, inside test, signed distance, cleanup.
 
 use super::{Nearest, ShapeError};
 use crate::math::Vector64;
@@ -72,7 +72,7 @@ pub(crate) fn nearest(corners: &[Vector64], point: Vector64) -> Nearest {
     Nearest { distance: side * distance, normal }
 }
 
-/// The first edge by which a path enters, and how deep behind its line the path ends.
+/// The first edge crossed by an entering path, and the depth of the end of the path behind its line.
 pub(crate) fn first_crossing(corners: &[Vector64], from: Vector64, to: Vector64) -> Option<Nearest> {
     let outwards = if doubled_area(corners) > 0.0 { -1.0 } else { 1.0 };
     let way = to - from;
@@ -80,7 +80,7 @@ pub(crate) fn first_crossing(corners: &[Vector64], from: Vector64, to: Vector64)
     for (p, q) in edges(corners) {
         let normal = (q - p).perp().normalize_or_zero() * outwards;
         let (height, towards) = ((from - p).dot(normal), way.dot(normal));
-        // What starts on an edge, but for rounding, starts outside.
+        // A path that starts on an edge, within rounding, starts outside.
         if towards >= 0.0 || height < -1e-6 * (q - p).length() || height + towards >= 0.0 {
             continue;
         }
@@ -119,7 +119,7 @@ pub(super) fn tidied(corners: &[Vector64]) -> Vec<Vector64> {
     corners
 }
 
-/// Refuses what is not a simple polygon with an area.
+/// Returns an error if the polygon is not simple or has no area.
 pub(super) fn check(corners: &[Vector64]) -> Result<(), ShapeError> {
     if corners.len() < 3 {
         return Err(ShapeError::TooFewCorners);
@@ -134,7 +134,7 @@ pub(super) fn check(corners: &[Vector64]) -> Result<(), ShapeError> {
     if is_simple(&tidied(corners)) { Ok(()) } else { Err(ShapeError::SelfIntersecting) }
 }
 
-/// Whether no two edges meet except neighbours in their common corner.
+/// Whether no two edges meet, except adjacent edges at their common corner.
 pub(super) fn is_simple(corners: &[Vector64]) -> bool {
     let n = corners.len();
     let edge = |k: usize| (corners[k], corners[(k + 1) % n]);

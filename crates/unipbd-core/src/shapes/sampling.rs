@@ -3,7 +3,7 @@
 use super::Shape;
 use crate::math::Vector64;
 
-/// Points that stand for equal parts of a shape.
+/// Points that represent equal parts of a shape.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Samples {
     /// Points, in the coordinates of the shape [m]; their mean is the centroid.
@@ -12,19 +12,19 @@ pub struct Samples {
     pub area: f64,
 }
 
-/// Cell centres of a lattice laid into the bounding box, those inside the shape.
+/// Cell centres of a lattice in the bounding box that lie inside the shape.
 pub(super) fn fill(shape: &Shape, spacing: f64) -> Samples {
     let moments = shape.moments();
     let (low, high) = bounds(shape);
     let counts = ((high - low) / spacing).round().max(Vector64::ONE);
-    // A box gets a lattice that fits it exactly; a disc one of the true spacing through its centre.
+    // For a box the lattice fits exactly; for a disc it has the true spacing and a node at the centre.
     let cell = if matches!(shape, Shape::Polygon(_)) { (high - low) / counts } else { Vector64::splat(spacing) };
     let start = (low + high - cell * (counts - Vector64::ONE)) * 0.5;
     let mut points = Vec::new();
     for row in 0..counts.y as usize {
         for column in 0..counts.x as usize {
             let point = start + cell * Vector64::new(column as f64, row as f64);
-            // On the outline itself rounding would decide, and differently on two sides.
+            // On the outline itself the result would depend on rounding, and differ between two sides.
             if shape.contains(point) && shape.nearest(point).distance < -1e-6 * spacing {
                 points.push(point);
             }

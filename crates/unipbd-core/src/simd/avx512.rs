@@ -1,7 +1,7 @@
 //! Lanes in the registers of AVX-512: the two columns of a turn in one vector of sixteen.
 //!
-//! Safety of the whole file: as in the file of the other x86-64 sets, a value of [`Avx512`] exists only
-//! because an unsafe function of [`Turn`] made it, whose caller vouched for AVX2, AVX-512F and AVX-512VL.
+//! Safety of the whole file: as in the file of the other x86-64 sets, a value of [`Avx512`] is made only by an
+//! unsafe function of [`Turn`], and the caller of that function guarantees AVX2, AVX-512F and AVX-512VL.
 #![allow(unsafe_code)]
 
 use super::LANES;

@@ -28,7 +28,7 @@ impl Entry for i32 {
 
 /// Eight numbers in the registers of one instruction set.
 ///
-/// Values come into being only through the unsafe functions, whose caller vouches that the machine
+/// Values are made only by the unsafe functions, and their caller guarantees that the machine
 /// has the instruction set; so the safe operations, which need a value, are sound.
 pub(crate) trait Lanes: Number {
     /// Eight counts, to be compared with a column number.
@@ -86,14 +86,14 @@ pub(crate) trait Lanes: Number {
 /// The entries of two columns of the list.
 pub(crate) type ColumnPair<E> = [[E; LANES]; 2];
 
-/// What a turn of the loop over columns works on: a number for each of eight rows in each of two columns.
-/// From loads to sums is a long chain, and two columns overlap better than one.
+/// The numbers of one iteration of the loop over columns: one for each of eight rows in each of two columns.
+/// Loads and sums form a long dependency chain, and two columns overlap better than one.
 ///
 /// As for [`Lanes`], a value proves the instruction set.
 pub(crate) trait Turn: Number {
     /// The eight sums of the rows.
     type Sums: Lanes;
-    /// Eight counts of the neighbours that are left.
+    /// Eight counts of the remaining neighbours.
     type Counts: Copy;
 
     /// Numbers in a row.

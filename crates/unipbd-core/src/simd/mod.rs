@@ -1,6 +1,6 @@
 //! Instruction sets: eight lanes of f32 in the vectors of each of them, and the choice at run time.
 //!
-//! All forms give the same bits, because none of them fuses or reorders an operation, and square roots and
+//! All implementations give the same bits: none of them fuses or reorders an operation, and square roots and
 //! quotients are exactly rounded everywhere. With the `f64` feature only scalars exist.
 
 #[cfg(all(target_arch = "x86_64", not(feature = "f64")))]
@@ -21,15 +21,15 @@ use crate::math::Vector;
 /// Rows in a block.
 pub const LANES: usize = 8;
 
-/// Two vectors of one row, which are fetched by one load.
+/// Two vectors of one row, read by one load.
 pub(crate) type Record = [Vector; 2];
 
 /// An instruction set that passes are compiled for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Level {
-    /// One row at a time: the oracle of the others.
+    /// One row at a time: the reference for the others.
     Scalar,
-    /// Arrays of eight, in whatever instructions the target has.
+    /// Arrays of eight, compiled to the instructions of the target.
     Portable,
     /// Two vectors of four lanes; every x86-64 has it.
     Sse2,

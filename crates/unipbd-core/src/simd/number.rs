@@ -3,7 +3,7 @@
 use crate::math::{Real, larger};
 use std::ops::{Add, Div, Mul, Sub};
 
-/// A number, or eight of them: what formulas of a pair are written in.
+/// A number, or eight of them: the type used in the formulas of a pair.
 pub trait Number: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self> {
     /// A constant.
     fn like(self, value: Real) -> Self;

@@ -1,4 +1,4 @@
-//! Lanes as plain arrays, for machines without a form of their own.
+//! Lanes as plain arrays, for machines without their own implementation.
 #![allow(unsafe_code)]
 
 use super::LANES;

@@ -9,7 +9,7 @@ pub(crate) trait Space: Copy + Send + Sync {
     fn shortest<N: Number>(self, x: N, y: N) -> (N, N);
 }
 
-/// A domain without periods: scenes without them do not pay for them.
+/// A domain without periods: it adds no cost to scenes without periodic axes.
 #[derive(Clone, Copy)]
 pub(crate) struct Open;
 

@@ -1,8 +1,8 @@
 //! Lanes in the registers of x86-64: SSE2, which every such machine has, and AVX2.
 //!
-//! Safety of the whole file: an intrinsic is sound where the machine has its instruction set. A
-//! value of [`Avx2`] exists only because an unsafe function of [`Lanes`] made it, whose caller
-//! vouched for AVX2; so operations on values are sound. SSE2 is part of the x86-64 baseline.
+//! Safety of the whole file: an intrinsic is sound if the machine has its instruction set. A
+//! value of [`Avx2`] is made only by an unsafe function of [`Lanes`], and the caller of that function
+//! guarantees AVX2; so operations on values are sound. SSE2 is part of the x86-64 baseline.
 #![allow(unsafe_code)]
 
 use super::LANES;

@@ -1,4 +1,4 @@
-//! Square blocks of the plane, and what was measured in each.
+//! Square blocks of the plane, and their motion statistics.
 
 use crate::math::{Real, Vector};
 use crate::periodic::{Periodic, PeriodicAxis};
@@ -7,7 +7,7 @@ use std::collections::HashMap;
 /// Column and row of a block.
 pub(super) type Key = (i32, i32);
 
-/// Where blocks are.
+/// Layout of the blocks.
 pub(super) struct Layout {
     pub periodic: Periodic,
     x: Axis,
@@ -30,7 +30,7 @@ impl Axis {
 
     fn block(&self, x: Real) -> i32 {
         match self.period {
-            // Far away all share the last block.
+            // All distant positions share the last block.
             None => (x * self.inverse).floor().clamp(-1e9, 1e9) as i32,
             Some((axis, count)) => (((axis.wrap(x) - axis.from) * self.inverse) as i32).clamp(0, count - 1),
         }
@@ -63,21 +63,21 @@ impl Layout {
     }
 }
 
-/// What was measured in a block, or in all that are connected.
+/// Motion statistics of a block, or of a set of connected blocks.
 #[derive(Clone, Copy)]
 pub(super) struct Block {
     pub count: u32,
-    /// Sum of the distances from where particles came to rest [m].
+    /// Sum of the particle displacements since rest began [m].
     pub moved: f64,
-    /// The largest of them [m].
+    /// The largest displacement [m].
     pub farthest: Real,
-    /// How long the one that came last has been at rest [s].
+    /// Rest time of the particle that came to rest last [s].
     pub rest: Real,
     /// Fastest particle [m/s].
     pub speed: Real,
-    /// Whether all may sleep.
+    /// Whether all its particles may sleep.
     pub sleepy: bool,
-    /// Whether it moves too much to sleep, and for others to sleep beside it.
+    /// Whether it moves too much to sleep, or to let adjacent blocks sleep.
     pub rough: bool,
 }
 
@@ -85,7 +85,7 @@ impl Block {
     const EMPTY: Block =
         Block { count: 0, moved: 0.0, farthest: 0.0, rest: Real::INFINITY, speed: 0.0, sleepy: true, rough: false };
 
-    /// Mean distance from where particles came to rest [m].
+    /// Mean particle displacement since rest began [m].
     pub fn mean(&self) -> f64 {
         self.moved / f64::from(self.count.max(1))
     }
@@ -101,16 +101,16 @@ impl Block {
     }
 }
 
-/// Blocks in the order in which they were first asked for.
+/// Blocks in the order of their first access.
 #[derive(Default)]
 pub(super) struct Blocks {
     all: Vec<(Key, Block)>,
-    /// Looked up, never walked through: its order does not matter.
+    /// Used only for look-up, never iterated: its order does not matter.
     places: HashMap<Key, u32>,
     last: usize,
-    /// The first block that each is connected with, by sides or corners.
+    /// The first block of the connected set of each block; blocks connect by sides or corners.
     roots: Vec<u32>,
-    /// What was measured in all that are connected, at the first of them.
+    /// Motion statistics of each connected set, stored at its first block.
     wholes: Vec<Block>,
 }
 
@@ -121,7 +121,7 @@ impl Blocks {
         self.last = 0;
     }
 
-    /// A block, empty at first. Rows come in order of their cells: it is mostly the last one again.
+    /// A block, empty at first. Rows are sorted by cell, so it is usually the last block again.
     pub fn at(&mut self, key: Key) -> &mut Block {
         if self.all.get(self.last).is_none_or(|&(known, _)| known != key) {
             let next = self.all.len() as u32;
@@ -141,7 +141,7 @@ impl Blocks {
         &mut self.all
     }
 
-    /// Finds out which blocks are connected.
+    /// Finds the connected sets of blocks.
     pub fn connect(&mut self, layout: &Layout) {
         let (places, roots) = (&self.places, &mut self.roots);
         roots.clear();
@@ -162,12 +162,12 @@ impl Blocks {
         }
     }
 
-    /// What all that is connected with the block at a place of [`all`](Self::all) has in common.
+    /// Motion statistics of the connected set of the block at an index of [`all`](Self::all).
     pub fn whole(&self, place: usize) -> &Block {
         &self.wholes[self.roots[place] as usize]
     }
 
-    /// A block, and all that is connected with it.
+    /// A block, and its connected set.
     pub fn with_whole(&mut self, key: Key) -> (&Block, &Block) {
         self.at(key);
         (&self.all[self.last].1, self.whole(self.last))

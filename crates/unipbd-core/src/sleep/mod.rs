@@ -1,14 +1,14 @@
-//! Liquids at rest: blocks of liquid that have hardly moved for a while are held where they are until
-//! something near them moves.
+//! Liquids at rest: blocks of liquid that have hardly moved for a while are held in place until
+//! there is motion near them.
 //!
 //! The plane is cut into square blocks. Connected blocks of liquid, and of bodies in it, fall asleep
 //! together once their particles have moved by less than [`STILL`] spacings in the mean for [`DELAY`]
-//! seconds, and in no block by more than [`ROUGH`]. A sleeping block wakes when one around it is rough:
-//! motion spreads a block per frame, or as far as it can get in one. Sleeping blocks next to others that are awake have a pressure all the same, so that nobody
-//! is pushed by what no longer answers.
+//! seconds, and in no block by more than [`ROUGH`]. A sleeping block wakes when a block around it is rough:
+//! motion spreads by one block per frame, or by its distance at the current speed if that is larger. Sleeping
+//! blocks adjacent to awake blocks still have a pressure, so that they respond to awake particles.
 //!
-//! Everything follows from two columns: where a particle came to rest, and how long ago. Blocks are
-//! made anew in each frame, from the rows that are awake.
+//! The state consists of two columns: the rest position of each particle, and its rest time. Blocks are
+//! rebuilt in each frame, from the awake rows.
 
 mod blocks;
 
@@ -30,7 +30,7 @@ const ROUGH: f64 = 0.1;
 const FAR: f64 = 1.0;
 /// How long they must have been at rest [s].
 const DELAY: f64 = 0.5;
-/// What moves is felt at most this many blocks away.
+/// Upper limit of the wake distance, in blocks.
 const FARTHEST: i32 = 16;
 
 /// Puts liquid to sleep and wakes it.
@@ -41,20 +41,20 @@ pub(crate) struct LiquidSleep {
     far: Real,
     frame_time: Real,
     blocks: Blocks,
-    /// The blocks of sleeping rows, sorted, and those of them that lie near others that are awake.
+    /// The blocks of sleeping rows, sorted, and the sleeping blocks adjacent to awake ones.
     sleeping: Vec<Key>,
     border: Vec<Key>,
     last_border: Vec<Key>,
-    /// Whether these are those of the rows.
+    /// Whether these match the rows.
     known: bool,
-    /// Blocks to be woken, and to be put to sleep.
+    /// Blocks to be woken, and blocks to be put to sleep.
     waking: Vec<Key>,
     tiring: Vec<Key>,
     order: Vec<u32>,
 }
 
 impl LiquidSleep {
-    /// The rules of a scene, or nothing where it does not ask for sleep.
+    /// The sleep rules of a scene, or `None` if the scene does not enable sleep.
     pub fn new(scene: &Scene, periodic: Periodic) -> Option<Self> {
         let spacings = |count: f64| real(count * scene.spacing);
         scene.solver.sleep.then(|| LiquidSleep {
@@ -74,12 +74,12 @@ impl LiquidSleep {
         })
     }
 
-    /// The rows were changed by somebody else.
+    /// Invalidates the blocks: the rows were changed outside of this module.
     pub fn forget(&mut self) {
         self.known = false;
     }
 
-    /// Ends a frame: decides who wakes and who falls asleep. `may` says whether the sample of this id may.
+    /// Ends a frame: selects the blocks that wake and fall asleep. `may` is whether the sample of this id may sleep.
     pub fn decide(&mut self, particles: &mut Particles, may: impl Fn(u32) -> bool) {
         self.know(particles);
         self.measure(particles, may);
@@ -88,7 +88,7 @@ impl LiquidSleep {
         self.find_tiring();
     }
 
-    /// Decides that what sleeps near some points wakes, and nothing else.
+    /// Selects the sleeping blocks near some points to wake, and no other blocks.
     pub fn wake_near(&mut self, points: &[Vector], particles: &Particles) {
         self.know(particles);
         self.blocks.clear();
@@ -103,12 +103,12 @@ impl LiquidSleep {
         tidy(&mut self.waking);
     }
 
-    /// Whether a sleeping row here is about to wake.
+    /// Whether a sleeping row at this point is about to wake.
     pub fn is_waking(&self, point: Vector) -> bool {
         holds(&self.waking, self.layout.key(point))
     }
 
-    /// Lets what sleeps in the block of a point wake too.
+    /// Adds the sleeping block of a point to the blocks to wake.
     pub fn wake_also(&mut self, point: Vector) {
         let key = self.layout.key(point);
         if let (true, Err(place)) = (holds(&self.sleeping, key), self.waking.binary_search(&key)) {
@@ -131,7 +131,7 @@ impl LiquidSleep {
         self.known = true;
     }
 
-    /// How the rows that are awake have moved, block by block.
+    /// Measures the motion of the awake rows, block by block.
     fn measure(&mut self, particles: &Particles, may: impl Fn(u32) -> bool) {
         self.blocks.clear();
         for row in 0..particles.awake() {
@@ -154,7 +154,7 @@ impl LiquidSleep {
         self.blocks.connect(&self.layout);
     }
 
-    /// In a rough block everybody begins anew, and so does all that is connected and not still.
+    /// Rest restarts for all particles in a rough block, and in a connected set that is not still.
     fn note_rest(&mut self, particles: &mut Particles) {
         for row in 0..particles.awake() {
             let position = particles.position[row];
@@ -167,7 +167,7 @@ impl LiquidSleep {
         }
     }
 
-    /// What sleeps near a rough block wakes: as far from it as something fast gets in a frame.
+    /// Wakes sleeping blocks near a rough block, within the distance of its fastest particle in a frame.
     fn find_waking(&mut self) {
         self.waking.clear();
         if self.sleeping.is_empty() {
@@ -182,7 +182,7 @@ impl LiquidSleep {
         tidy(&mut self.waking);
     }
 
-    /// Connected blocks that have been calm for long fall asleep.
+    /// Connected blocks that have been at rest long enough fall asleep.
     fn find_tiring(&mut self) {
         self.tiring.clear();
         for (place, &(key, _)) in self.blocks.all().iter().enumerate() {
@@ -195,7 +195,7 @@ impl LiquidSleep {
         self.tiring.sort_unstable();
     }
 
-    /// The sleeping blocks around those that are awake.
+    /// The sleeping blocks adjacent to awake ones.
     fn find_border(&mut self) {
         self.sleeping.retain(|&key| !holds(&self.waking, key));
         self.sleeping.extend_from_slice(&self.tiring);
@@ -209,7 +209,7 @@ impl LiquidSleep {
         tidy(border);
     }
 
-    /// The dense rows in their new order, if it is another.
+    /// The new order of the dense rows, if it differs.
     pub fn plan(&mut self, particles: &Particles) -> Option<Plan<'_>> {
         std::mem::swap(&mut self.border, &mut self.last_border);
         self.find_border();
@@ -234,7 +234,7 @@ impl LiquidSleep {
     }
 }
 
-/// Which rows sleep from now on.
+/// The rows that sleep from now on.
 pub(crate) struct Plan<'a> {
     /// The dense rows in their new order: those awake, those asleep near them, all others.
     pub order: &'a [u32],
@@ -247,7 +247,7 @@ pub(crate) struct Plan<'a> {
 }
 
 impl Plan<'_> {
-    /// Lets sleeping rows lie still, and those that were woken begin anew. Call with the rows in their
+    /// Stops sleeping rows, and restarts the rest of woken rows. Call it with the rows in their
     /// new order.
     pub fn settle(&self, particles: &mut Particles) {
         for row in self.woken.clone() {

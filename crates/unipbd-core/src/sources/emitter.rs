@@ -1,8 +1,8 @@
-//! Emitters: rows of particles behind a face are pushed across it and let go.
+//! Emitters: rows of particles behind a face are moved across it and released.
 //!
-//! Behind each column of the face stand three particles moved by the emitter. They make the fluid
-//! in front see a full neighbourhood; the first to cross the face is let go, and a new one is added
-//! three spacings behind. (Points set free at random press on each other ten times harder.)
+//! Behind each column of the face are three kinematic particles of the emitter. They complete the
+//! neighbourhood of the fluid in front; the first particle to cross the face is released, and a new one is added
+//! three spacings behind. (Particles released at random positions have ten times the pressure.)
 
 use super::injector::RegionInjector;
 use crate::math::{Real, Vector, Vector64, real, vector, wide};
@@ -15,11 +15,11 @@ use crate::scene::{Emitter, Profile, Scene};
 
 use super::saved::{ColumnState, EmitterState, ROWS_BEHIND};
 
-/// Mean compression ahead of the face at which the throttle begins to close; at twice that it is shut.
+/// Mean compression ahead of the face at which the throttle begins to close; at twice that it is closed.
 const THROTTLE_COMPRESSION: f64 = 0.015;
-/// Way of the flow, in spacings, over which the compression ahead is averaged while it grows...
+/// Flow distance, in spacings, over which the compression ahead is averaged while it grows...
 const WAY_TO_CLOSE: f64 = 1.0;
-/// ...and while it falls: a nozzle that opens at once again would hammer on what blocks it.
+/// ...and while it falls: a nozzle that opens immediately would hit an obstacle repeatedly.
 const WAY_TO_OPEN: f64 = 8.0;
 
 /// All emitters of a scene.
@@ -73,14 +73,14 @@ impl EmitterSystem {
         }
     }
 
-    /// Fastest speed at which any emitter pushes at this time [m/s].
+    /// Maximum emitter speed at this time [m/s].
     pub fn speed_max(&self, time: f64) -> f64 {
         let active = self.emitters.iter().filter(|nozzle| nozzle.is_active(time));
         active.flat_map(|nozzle| &nozzle.columns).map(|column| column.speed).fold(0.0, f64::max)
     }
 
-    /// Moves all emitters on by `dt` from `time`: lets particles go, adds new ones, sets the speed of
-    /// those behind the face. Returns how many were added.
+    /// Advances all emitters by `dt` from `time`: releases particles, adds new ones, sets the speed of
+    /// the particles behind the face. Returns the number of particles added.
     pub fn advance(
         &mut self,
         time: f64,
@@ -99,7 +99,7 @@ impl EmitterSystem {
         u64::from(particles.ids_given() - before)
     }
 
-    /// Whether the next [`advance`](Self::advance) by `dt` adds particles or lets some go.
+    /// Whether the next [`advance`](Self::advance) by `dt` adds or releases particles.
     pub fn will_change(&self, time: f64, dt: f64) -> bool {
         self.emitters.iter().any(|nozzle| nozzle.will_change(time, dt))
             || self.injectors.iter().any(|injector| injector.will_change(time, dt))
@@ -110,19 +110,19 @@ impl EmitterSystem {
         self.emitters.iter().map(|nozzle| nozzle.columns.len())
     }
 
-    /// What changes while the emitters run, in words: part of a saved state.
+    /// The variable state of the emitters as words: part of a saved state.
     pub fn save(&self) -> Vec<u64> {
         self.emitters.iter().flat_map(|nozzle| nozzle.state.words()).collect()
     }
 
-    /// Whether [`restore`](Self::restore) would find words it can take.
+    /// Whether [`restore`](Self::restore) accepts these words.
     pub fn accepts(&self, words: &[u64]) -> bool {
         let mut words = words.iter().copied();
         let read = |columns| EmitterState::from_words(&mut words, columns).is_some();
         self.columns().all(read) && words.next().is_none()
     }
 
-    /// Takes back what [`save`](Self::save) gave.
+    /// Restores the state written by [`save`](Self::save).
     pub fn restore(&mut self, words: &[u64]) {
         let mut words = words.iter().copied();
         for nozzle in &mut self.emitters {
@@ -193,7 +193,7 @@ impl Nozzle {
         if !self.state.running {
             return;
         }
-        // Where particles were just removed, the rows of the list are gone: the throttle stays.
+        // After a removal of particles the rows of the list are invalid: the throttle stays unchanged.
         if self.throttled && neighbors.is_current() {
             self.feel(dt, particles, neighbors);
         }
@@ -212,7 +212,7 @@ impl Nozzle {
         }
     }
 
-    /// Lets everything behind the face go.
+    /// Releases all particles behind the face.
     fn close(&mut self, particles: &mut Particles, rows: &RowIndex) {
         self.state.running = false;
         for column in &self.state.columns {
@@ -238,7 +238,7 @@ impl Nozzle {
         }
     }
 
-    /// Lets the first particle of a column go, with its smoke, and adds a new last one.
+    /// Releases the first particle of a column, with its smoke, and adds a new last one.
     fn let_go(&mut self, index: usize, particles: &mut Particles, rows: &RowIndex) {
         let first = self.state.columns[index].behind[0];
         if let Some(row) = row_of(first, particles, rows) {
@@ -300,7 +300,7 @@ impl Nozzle {
         shift
     }
 
-    /// Takes up the compression ahead of the face, averaged over the way of the flow.
+    /// Updates the compression ahead of the face, averaged over the flow distance.
     fn feel(&mut self, dt: f64, particles: &Particles, neighbors: &Neighbors) {
         let (felt, now) = (self.state.compression, self.compression_ahead(particles, neighbors));
         let fastest = self.columns.iter().map(|column| column.speed).fold(0.0, f64::max);
@@ -328,13 +328,13 @@ impl Nozzle {
 }
 
 impl EmitterState {
-    /// Part of the full speed at which the nozzle pushes.
+    /// Fraction of the full speed of the nozzle.
     fn throttle(&self) -> f64 {
         (2.0 - self.compression / THROTTLE_COMPRESSION).clamp(0.0, 1.0)
     }
 }
 
-/// The row of a particle that the index may be too old to know: one added in this very substep.
+/// The row of a particle that may be missing in the index: one added in this substep.
 fn row_of(id: u32, particles: &Particles, rows: &RowIndex) -> Option<usize> {
     match rows.row(id) {
         Some(row) => Some(row as usize),
@@ -370,7 +370,7 @@ fn columns(emitter: &Emitter, spacing: f64) -> Vec<Column> {
 }
 
 impl Profile {
-    /// Part of the speed at a place across the face, -1 to 1.
+    /// Fraction of the speed at a position across the face, -1 to 1.
     fn factor(self, across: f64) -> f64 {
         match self {
             Profile::Uniform => 1.0,

@@ -7,19 +7,19 @@ use crate::phase::{MaterialIndex, Phase};
 use crate::rng::Rng;
 use crate::scene::{Injector, Region, Scene};
 
-/// Fluid is added only where no centre lies within this many spacings.
+/// Fluid is added only if no particle centre lies within this many spacings.
 const ROOM: f64 = 0.9;
 /// Stream of random places, one per injector.
 const INJECTOR_STREAM: u64 = 5 << 32;
 
-/// Whole numbers up to a count that grows with time. The end of one substep and the start of the next
-/// are the same moment but for rounding: they must give the same number.
+/// Integers up to a count that grows with time. The end of one substep and the start of the next
+/// differ only by rounding: they must give the same number.
 pub(super) fn due_until(count: f64) -> u64 {
     (count + 1e-6).floor() as u64
 }
 
-/// An injector of a scene. It has no state: which particle is due when follows from the time, and
-/// where it goes from its number and the seed.
+/// An injector of a scene. It has no state: the release time of a particle follows from the time, and
+/// its position from its number and the seed.
 pub(super) struct RegionInjector {
     region: Region,
     rate: f64,
@@ -37,7 +37,7 @@ pub(super) struct RegionInjector {
 }
 
 impl RegionInjector {
-    /// `None` where the material is unknown, which `Scene::validate` refuses.
+    /// `None` if the material is unknown, which `Scene::validate` refuses.
     pub fn new(injector: &Injector, scene: &Scene, seed: u64, number: usize) -> Option<Self> {
         let (index, material) = scene.material(&injector.material)?;
         let mass = material.particle_mass(scene.spacing);
@@ -69,7 +69,7 @@ impl RegionInjector {
         !self.due(time, dt).is_empty()
     }
 
-    /// Adds what is due.
+    /// Adds the particles that are due.
     pub fn advance(&self, time: f64, dt: f64, particles: &mut Particles, neighbors: &Neighbors) {
         let due = self.due(time, dt);
         if due.is_empty() {
@@ -114,10 +114,10 @@ impl RegionInjector {
         let near = |other: Vector| neighbors.periodic().min_image(other - position).length() < self.room;
         let mut free = !added.iter().any(|&other| near(other));
         if neighbors.is_current() {
-            // Rows that were added a moment ago are not in the grid yet; they are in `added` or far away.
+            // Rows that were just added are not in the grid yet; they are in `added` or far away.
             neighbors.for_each_near(position, self.room, |row| free &= !near(particles.positions()[row]));
         } else {
-            // Rows were removed before this substep: those of the grid are others now.
+            // Rows were removed before this substep: the rows in the grid are no longer valid.
             free &= !particles.positions()[..particles.dense()].iter().any(|&other| near(other));
         }
         free

@@ -1,4 +1,4 @@
-//! Where particles come from and where they go: emitters and removal rules.
+//! Sources and sinks of particles: emitters and removal rules.
 
 mod emitter;
 mod injector;

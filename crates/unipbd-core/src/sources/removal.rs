@@ -1,4 +1,4 @@
-//! Removal: past its lifetime, outside the domain, or gas with no smoke near.
+//! Removal of particles: after their lifetime, outside the domain, or gas without smoke nearby.
 
 use super::sink::RegionSink;
 use crate::math::{Real, Vector, Vector64, real, vector};
@@ -15,7 +15,7 @@ pub struct RemovalRules {
     region: Option<(Vector, Vector)>,
     keep_radius: Real,
     smoke: Grid,
-    /// Positions of the smoke: as they come, and in the order of the grid.
+    /// Positions of the smoke: in row order, and in grid order.
     markers: Vec<Vector>,
     sorted: Vec<Vector>,
     sinks: Vec<RegionSink>,
@@ -49,7 +49,7 @@ impl Rule {
 }
 
 impl RemovalRules {
-    /// The rules of a scene, or nothing where no particle is ever removed.
+    /// The removal rules of a scene, or `None` if no particle is ever removed.
     pub fn new(scene: &Scene, periodic: Periodic) -> Option<Self> {
         let materials: Vec<Rule> = scene.materials().map(Rule::new).collect();
         let corner = |given: Option<[f64; 2]>, open: f64| given.map_or(Vector64::splat(open), Vector64::from);
@@ -73,7 +73,7 @@ impl RemovalRules {
         })
     }
 
-    /// Whether particles must know their age.
+    /// Whether the rules need the age of particles.
     pub fn needs_age(&self) -> bool {
         self.keep_radius > 0.0 || self.materials.iter().any(|rule| rule.lifetime.is_finite())
     }
@@ -87,7 +87,7 @@ impl RemovalRules {
         self.drain(particles, time, rows);
     }
 
-    /// Adds what sinks take, the particles with the lowest ids first.
+    /// Adds the particles taken by sinks, the lowest ids first.
     fn drain(&self, particles: &Particles, time: f64, rows: &mut Vec<u32>) {
         for sink in &self.sinks {
             let allowance = sink.allowance(time, self.frame_time);
@@ -130,7 +130,7 @@ impl RemovalRules {
         !found
     }
 
-    /// Sorts the smoke into its grid, where anybody asks for it.
+    /// Sorts the smoke into its grid, if a rule needs it.
     fn sort_smoke(&mut self, particles: &Particles, parallelism: Parallelism) {
         if self.keep_radius == 0.0 {
             return;
@@ -145,7 +145,7 @@ impl RemovalRules {
     }
 }
 
-/// Whether a script, such as an emitter, still moves the particle.
+/// Whether the particle is kinematic, such as a particle held by an emitter.
 fn is_scripted(particles: &Particles, row: usize) -> bool {
     row < particles.dense() && particles.inverse_mass[row] == 0.0
 }

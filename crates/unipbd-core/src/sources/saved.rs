@@ -1,22 +1,22 @@
-//! What changes in an emitter while it runs: part of a saved state.
+//! The variable state of an emitter: part of a saved state.
 
 /// Particles kept behind the face in each column.
 pub(super) const ROWS_BEHIND: usize = 3;
 
-/// The changing part of an emitter.
+/// The variable state of an emitter.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct EmitterState {
     pub rng: u64,
     pub running: bool,
-    /// Mean of max(C, 0) ahead of the face, averaged over the way of the flow.
+    /// Mean of max(C, 0) ahead of the face, averaged over the flow distance.
     pub compression: f64,
     pub columns: Vec<ColumnState>,
 }
 
-/// The changing part of one column of its face.
+/// The variable state of one column of its face.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct ColumnState {
-    /// Way since the last particle crossed the face, in spacings [0, 1).
+    /// Flow distance since the last particle crossed the face, in spacings [0, 1).
     pub progress: f64,
     /// Ids of the particles behind the face, the nearest first.
     pub behind: [u32; ROWS_BEHIND],
@@ -33,7 +33,7 @@ impl EmitterState {
         words
     }
 
-    /// The state from words; `None` where they mean nothing.
+    /// The state from words; `None` if they are invalid.
     pub fn from_words(words: &mut impl Iterator<Item = u64>, columns: usize) -> Option<Self> {
         let (rng, running) = (words.next()?, words.next()?);
         let part = |word: u64| Some(f64::from_bits(word)).filter(|part| (0.0..=1.0).contains(part));

@@ -1,4 +1,4 @@
-//! Sinks: regions that take particles away.
+//! Sinks: regions that remove particles.
 
 use super::injector::due_until;
 use crate::math::wide;
@@ -8,7 +8,7 @@ use crate::scene::{Region, Scene, Sink};
 /// A sink of a scene.
 pub(super) struct RegionSink {
     region: Region,
-    /// Whether it takes a material.
+    /// Whether it removes a material.
     takes: Vec<bool>,
     rate: f64,
     start: f64,
@@ -27,7 +27,7 @@ impl RegionSink {
         }
     }
 
-    /// How many it may take in the frame that ends at `time`.
+    /// Maximum number of particles it may remove in the frame that ends at `time`.
     pub fn allowance(&self, time: f64, frame_time: f64) -> usize {
         if time < self.start || time >= self.stop {
             return 0;
@@ -39,7 +39,7 @@ impl RegionSink {
         until(time) - until(time - frame_time)
     }
 
-    /// Whether it would take the particle in this row.
+    /// Whether it would remove the particle in this row.
     pub fn takes(&self, particles: &Particles, row: usize) -> bool {
         self.takes[usize::from(particles.materials()[row])]
             && self.region.contains(wide(particles.positions()[row]).into())

@@ -6,13 +6,13 @@ use crate::coupling::RigidBodies;
 
 /// The bodies as words: the number of bytes, then the bytes.
 pub(super) fn to_words(rigid: &RigidBodies) -> Vec<u64> {
-    // Plain data in memory: writing it cannot fail.
+    // Plain data in memory: writing cannot fail.
     let bytes = postcard::to_stdvec(rigid).unwrap_or_default();
     let word = |chunk: &[u8]| chunk.iter().rev().fold(0, |word, &byte| word << 8 | u64::from(byte));
     std::iter::once(bytes.len() as u64).chain(bytes.chunks(8).map(word)).collect()
 }
 
-/// The bodies from words, if they are like those that run now.
+/// The bodies from words, if they match the bodies of the run.
 pub(super) fn from_words(words: &[u64], running: &RigidBodies) -> Result<RigidBodies, StateError> {
     let (&length, words) = words.split_first().ok_or_else(|| damaged("its bodies are missing"))?;
     let mut bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
@@ -24,7 +24,7 @@ pub(super) fn from_words(words: &[u64], running: &RigidBodies) -> Result<RigidBo
     if !rigid.is_like(running) {
         return Err(damaged("its bodies are not those of the run"));
     }
-    // How contacts are solved follows from the scene.
+    // The contact solver follows from the scene.
     rigid.contacts.solve_like(&running.contacts);
     Ok(rigid)
 }

@@ -1,11 +1,11 @@
-//! Whether what was read makes sense: a state with a right checksum may still be made by hand.
+//! Consistency check of data read: a state with a valid checksum may still be made by hand.
 
 use super::error::damaged;
 use super::{State, StateError};
 use crate::particles::Particles;
 
 impl State {
-    /// Notes what no run could have saved.
+    /// Reports values that no run could have saved.
     pub(super) fn check(&self) -> Result<(), StateError> {
         self.particles.check().map_err(damaged)?;
         let clock = &self.clock;
@@ -26,7 +26,7 @@ impl State {
 }
 
 impl Particles {
-    /// Says what is inconsistent about columns that come from outside.
+    /// Reports inconsistencies of columns from an external source.
     fn check(&self) -> Result<(), &'static str> {
         let rows = self.len();
         let always = [self.start.len(), self.displacement.len(), self.remainder.len(), self.velocity.len()];

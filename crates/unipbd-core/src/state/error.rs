@@ -2,11 +2,11 @@ use std::fmt;
 
 use crate::bytes::Damage;
 
-/// Why a state was not taken.
+/// Reasons why a state was rejected.
 #[derive(Clone, Debug, PartialEq, Eq)]
 #[non_exhaustive]
 pub enum StateError {
-    /// The bytes are something else altogether.
+    /// The bytes are not a saved state.
     NotAState,
     /// Written by another version of the format.
     Version {
@@ -15,13 +15,13 @@ pub enum StateError {
         /// Version that can be read.
         expected: u32,
     },
-    /// Cut off, altered, or inconsistent.
+    /// Truncated, altered, or inconsistent.
     Damaged(String),
     /// Saved from a scene that is built differently.
     OtherScene {
-        /// What the state says.
+        /// Value in the state.
         saved: String,
-        /// What the run has in its place.
+        /// Value in the run.
         running: String,
     },
 }

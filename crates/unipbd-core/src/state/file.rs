@@ -9,7 +9,7 @@ use crate::rng::mix;
 use crate::step::Clock;
 
 const MAGIC: &[u8; 8] = b"unipbd\0S";
-/// Goes up with every change of what follows.
+/// Version of the format; increased with every change of the contents.
 const VERSION: u32 = 6;
 const CHECKSUM_BYTES: usize = 8;
 
@@ -37,7 +37,7 @@ impl State {
     /// The state from bytes.
     ///
     /// # Errors
-    /// [`StateError`] where the bytes are foreign, of another version, or damaged.
+    /// [`StateError`] if the bytes are of another format or version, or damaged.
     pub fn from_bytes(bytes: &[u8]) -> Result<State, StateError> {
         let rest = bytes.strip_prefix(MAGIC).ok_or(StateError::NotAState)?;
         let found = Reader(rest).value::<u32>()?;

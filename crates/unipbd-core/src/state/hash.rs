@@ -8,9 +8,9 @@ use crate::rng::mix;
 use crate::step::Solver;
 
 impl Solver {
-    /// Hash of the state: id, material, position, remainder, velocity, mass, temperature, age and sleep of
-    /// every particle, pose and velocity of every body, and the number of substeps done. Independent of the order of rows, so the same
-    /// on any number of threads; two states with the same hash go on the same.
+    /// Hash of the state: id, material, position, remainder, velocity, mass, temperature, age and sleep of every
+    /// particle, pose and velocity of every body, and the number of substeps done. Independent of the order of rows, so
+    /// the same on any number of threads; two states with the same hash continue identically.
     pub fn state_hash(&self) -> u64 {
         let particles = self.particles();
         let sum = Parallelism::Serial.reduce(

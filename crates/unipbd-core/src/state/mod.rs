@@ -29,7 +29,7 @@ pub struct State {
     sections: Vec<Section>,
 }
 
-/// What one part of a run (emitters, a constraint group) needs beside the particles.
+/// The additional data of one part of a run (emitters, a constraint group).
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Section {
     name: String,

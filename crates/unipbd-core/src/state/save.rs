@@ -10,9 +10,9 @@ const SMOKE: &str = "smoke";
 const BODIES: &str = "bodies";
 
 impl Solver {
-    /// Everything this run goes on from. Changes nothing.
+    /// The complete state needed to continue this run. The run is not changed.
     ///
-    /// Not part of it: what was said about the run so far (events not yet taken, timings).
+    /// Reports of the run are not included (pending events, timings).
     pub fn save(&self) -> State {
         let parts = &self.world.parts;
         let mut sections = Vec::new();
@@ -38,13 +38,13 @@ impl Solver {
         }
     }
 
-    /// Goes back (or on) to a saved moment: from here the run goes on bit for bit as the saved one
+    /// Goes to a saved moment: the run then continues bit for bit as the saved one
     /// did, on any number of threads. Works for a state of any run of the same scene and seed.
     /// Constraint groups that were added to the saved run must have been added to this one too.
     ///
     /// # Errors
-    /// [`StateError::OtherScene`] where the state is of a scene that is built differently; nothing
-    /// has changed then.
+    /// [`StateError::OtherScene`] if the state is of a scene that is built differently; the run
+    /// is not changed in that case.
     pub fn restore(&mut self, state: &State) -> Result<(), StateError> {
         self.accept(state)?;
         let rigid = self.saved_bodies(state)?;
@@ -65,7 +65,7 @@ impl Solver {
         for group in &mut world.parts.groups {
             group.restore(next());
         }
-        // Ids may be others than before, so nobody may take the generation for the one it knew.
+        // Ids may differ from before, so the old generation number must not be reused.
         let generation = generation.max(state.clock.generation) + 1;
         world.clock = Clock { generation, ..state.clock };
         world.parts.particles.clone_from(&state.particles);
@@ -73,7 +73,7 @@ impl Solver {
         Ok(())
     }
 
-    /// The bodies of a state, where the run has some.
+    /// The bodies of a state, if the run has bodies.
     fn saved_bodies(&self, state: &State) -> Result<Option<RigidBodies>, StateError> {
         let Some(running) = &self.world.parts.rigid else { return Ok(None) };
         let section = state.sections.iter().find(|section| section.name == BODIES);

@@ -1,4 +1,4 @@
-//! What a state and the run that takes it must have in common, in words that a message can show.
+//! The properties that a state and the restored run must share, as text for error messages.
 
 use crate::math::Real;
 use crate::step::Solver;

@@ -1,4 +1,4 @@
-//! What a solver shows of its state.
+//! Read access to the state of a solver.
 
 use std::time::Duration;
 
@@ -7,7 +7,7 @@ use crate::math::Real;
 use crate::observe::{Event, WallForce, WallOutline};
 use crate::phase::{MaterialIndex, Phase};
 
-/// What a solver and the view of its substep show alike.
+/// Read access common to a solver and the view of its substep.
 macro_rules! shared_access {
     ($viewer:ty) => {
         impl $viewer {
@@ -46,8 +46,8 @@ macro_rules! shared_access {
                 &self.world.parts.materials
             }
 
-            /// Rigid bodies; in a substep, as they were when the frame began:
-            /// [`SubstepView::body_pose`](crate::SubstepView::body_pose) says where they are.
+            /// Rigid bodies; in a substep, their state at the start of the frame:
+            /// [`SubstepView::body_pose`](crate::SubstepView::body_pose) gives the current pose.
             pub fn bodies(&self) -> &[crate::rigid::Body] {
                 self.world.parts.rigid.as_ref().map_or(&[], |rigid| rigid.views())
             }
@@ -90,7 +90,7 @@ impl Solver {
     }
 
     /// Density errors C = rho/rho0 - 1 at these positions by row; 0 without a density constraint.
-    /// Measured when first asked for after a frame.
+    /// Measured on first access after a frame.
     pub fn density_errors(&self) -> &[Real] {
         self.look_on_threads(|world| {
             world.density_errors();
@@ -104,7 +104,7 @@ impl Solver {
     }
 
     /// Pressure over density by row [m^2/s^2], from the momentum that the multipliers of the last substep
-    /// carry. Measured when first asked for after a frame.
+    /// carry. Measured on first access after a frame.
     pub fn pressures(&self) -> &[Real] {
         self.look_on_threads(|world| {
             world.pressures();

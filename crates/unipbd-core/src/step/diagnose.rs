@@ -91,11 +91,11 @@ impl World {
         self.parts.groups.iter().find_map(|group| group.as_density())
     }
 
-    /// Density errors at the present positions by row; measured when first asked for.
+    /// Density errors at the present positions by row; measured on first access.
     pub(super) fn density_errors(&self) -> &[Real] {
         let searches = self.plan.has_neighbors();
         if searches && !self.parts.neighbors.is_current() {
-            // Within a frame that an error interrupted there may be no list: the last substep's must do.
+            // After an error within a frame there may be no list: the list of the last substep is used.
             return &self.parts.particles.density_error;
         }
         self.measured.density.get_or_init(|| {
@@ -108,12 +108,12 @@ impl World {
     fn body_sums(&self) -> Sums {
         let gravity = wide(self.parts.gravity);
         let bodies = self.parts.rigid.as_ref().map_or(&[][..], |rigid| rigid.views());
-        // Bodies that are particles were counted with them.
+        // Bodies made of particles are already counted with their particles.
         let posed = |id: usize| self.parts.rigid.as_ref().is_none_or(|rigid| rigid.bodies.elasticity(id).is_none());
         let moving = bodies.iter().enumerate().filter(|(id, body)| body.kind == BodyKind::Dynamic && posed(*id));
         moving.fold(Sums::default(), |sums, (_, body)| {
             let (x, v, spin) = (body.position, body.velocity, body.angular_velocity);
-            // A body that never turns may have an infinite moment of inertia.
+            // A body without rotation may have an infinite moment of inertia.
             let turning = if spin == 0.0 { 0.0 } else { body.inertia * spin };
             sums.join(Sums {
                 kinetic: 0.5 * (body.mass * v.length_squared() + turning * spin),
@@ -139,7 +139,7 @@ impl World {
                     return sums;
                 }
                 let (x, v, mass) = (wide(particles.position[row]), wide(particles.velocity[row]), 1.0 / inverse_mass);
-                // A force that follows the temperature has no potential.
+                // A temperature-dependent force has no potential.
                 let force = &forces[usize::from(particles.material[row])];
                 let acceleration = if force.thermal { Vector64::ZERO } else { wide(force.acceleration) };
                 sums.join(Sums {
@@ -176,7 +176,7 @@ impl World {
         all
     }
 
-    /// Pressure over density by row; measured when first asked for.
+    /// Pressure over density by row; measured on first access.
     pub(super) fn pressures(&self) -> &[Real] {
         self.measured.pressure.get_or_init(|| {
             if self.clock.dt == 0.0 {
@@ -196,7 +196,7 @@ impl World {
         listed && self.parts.pressure_grid.is_none()
     }
 
-    /// lambda/(m dt^2), as on the lattice at rest: for groups that cannot tell better.
+    /// lambda/(m dt^2), as on the lattice at rest: the fallback for groups without a better estimate.
     fn pressures_of_multipliers(&self) -> Vec<Real> {
         let scale = (self.parts.pressure_scale / (self.clock.dt * self.clock.dt)) as Real;
         let particles = &self.parts.particles;

@@ -4,9 +4,9 @@ use std::fmt;
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub enum SolverError {
-    /// A particle has a position or velocity that is not finite, or is absurdly fast.
+    /// A particle has a position or velocity that is not finite, or an excessive speed.
     Diverged {
-        /// Stage after which it was noticed.
+        /// Stage after which it was detected.
         stage: &'static str,
         /// Substep since the start.
         step: u64,
@@ -16,7 +16,7 @@ pub enum SolverError {
         particle: u32,
         /// Name of its material.
         material: String,
-        /// What is wrong with it.
+        /// Description of the error.
         what: String,
     },
 }

@@ -1,7 +1,7 @@
-//! Prediction, the taking up of corrections, and velocities from displacements.
+//! Prediction, application of corrections, and velocities from displacements.
 //!
 //! A substep works on the displacement u since its start, not on the difference of two positions:
-//! x = x_n + (u + rem), and what rounding keeps out of x is carried in rem. In f32 this stays accurate
+//! x = x_n + (u + rem); the rounding error of x is carried in rem. In f32 this stays accurate
 //! out to 10^5 spacings from the origin, where x - x_n would lose gravity altogether.
 
 use crate::constraints::Corrections;
@@ -22,7 +22,7 @@ pub struct BodyForce {
     pub thermal: bool,
 }
 
-/// u = dt v + dt^2 a, x = x_n + u, for every row that has inertia; rows moved by a script keep their velocity.
+/// u = dt v + dt^2 a, x = x_n + u, for every row that has inertia; kinematic rows keep their velocity.
 pub(super) fn predict(particles: &mut Particles, forces: &[BodyForce], dt: Real, parallelism: Parallelism) {
     let bands = particles.bands();
     let (material, phase, inverse_mass) = (&particles.material, &particles.phase, &particles.inverse_mass);
@@ -37,7 +37,7 @@ pub(super) fn predict(particles: &mut Particles, forces: &[BodyForce], dt: Real,
             None => pull,
         }
     };
-    // The pull on all rows of a chunk, if it is one.
+    // The acceleration of all rows of a chunk, if it is uniform.
     let common = |rows: Range<usize>| {
         let material = uniform(&material[rows.clone()])?;
         (acceleration.is_empty() && !forces[usize::from(material)].thermal).then(|| pull(rows.start))
@@ -68,15 +68,15 @@ pub(super) fn predict(particles: &mut Particles, forces: &[BodyForce], dt: Real,
     }
 }
 
-/// Whether no row is smoke or moved by a script: then a loop over them needs no branch and fills the vectors of the
-/// machine. No early return here, for the same reason.
+/// Whether no row is smoke or kinematic: then a loop over the rows needs no branch and uses full vectors of the
+/// machine. There is no early return here, for the same reason.
 #[inline(always)]
 fn are_plain(phase: &[Phase], inverse_mass: &[Real]) -> bool {
     let smoke = phase.iter().fold(false, |any, &phase| any | (phase == Phase::Smoke));
     !inverse_mass.iter().fold(smoke, |any, &inverse_mass| any | (inverse_mass == 0.0))
 }
 
-/// Adds to the velocities of what has inertia.
+/// Adds to the velocities of rows that have inertia.
 #[inline(always)]
 fn accelerate(velocity: &mut [Vector], inverse_mass: &[Real], pull: impl Fn(usize) -> Vector) {
     for (k, (velocity, &inverse_mass)) in velocity.iter_mut().zip(inverse_mass).enumerate() {
@@ -91,12 +91,12 @@ struct Moving<'a> {
     phase: &'a [Phase],
     start: &'a [Vector],
     remainder: &'a [Vector],
-    /// As [`are_plain`] says.
+    /// The result of [`are_plain`].
     plain: bool,
 }
 
 impl Moving<'_> {
-    /// Sets the displacements and moves the positions along, of all but smoke.
+    /// Sets the displacements and moves the positions of all rows except smoke.
     #[inline(always)]
     fn shift(&self, displacement: &mut [Vector], position: &mut [Vector], new: impl Fn(usize, Vector) -> Vector) {
         let rows = displacement.len();
@@ -113,13 +113,13 @@ impl Moving<'_> {
         }
     }
 
-    /// Where a row is that was displaced so far: x = x_n + (u + rem).
+    /// The position of a row with this displacement: x = x_n + (u + rem).
     fn place(&self, k: usize, displacement: Vector) -> Vector {
         displaced(self.start[k], displacement, self.remainder[k])
     }
 }
 
-/// Takes up the moves that velocities do not follow: as what is left over, they are no part of the displacements.
+/// Applies position-only moves: they go into the remainders, not into the displacements.
 pub(super) fn shift(particles: &mut Particles, corrections: &Corrections, parallelism: Parallelism) {
     let shifts = corrections.shifts();
     for rows in particles.bands() {
@@ -133,7 +133,7 @@ pub(super) fn apply(particles: &mut Particles, corrections: &Corrections, walls:
     let (steps, bands) = (corrections.displacements(), particles.bands());
     let (phase, start) = (&particles.phase, &particles.start);
     let (inverse_mass, remainder) = (&particles.inverse_mass, &particles.remainder);
-    // What goes farther than a box is thick may have passed it.
+    // A path longer than the thickness of a box may have passed through the box.
     let thinnest = walls.thinnest() * walls.thinnest();
     let boxes = thinnest.is_finite();
     let again = turns_out_again(corrections, walls);
@@ -170,13 +170,13 @@ pub(super) fn apply(particles: &mut Particles, corrections: &Corrections, walls:
     }
 }
 
-/// Whether what was turned out of a wall may be in another one. Friction stops a displacement, but not a shift: in a
-/// corner it could let one wall undo the way that the other turns it back.
+/// Whether a particle that was pushed out of a wall may be in another wall. Friction stops a displacement, but not a
+/// shift: in a corner it could let one wall undo the push of the other.
 fn turns_out_again(corrections: &Corrections, walls: &Walls) -> bool {
     walls.are_crowded() || corrections.any_shifted()
 }
 
-/// What [`apply`] will push against the measured walls: minus the momentum it gives, times dt [kg m].
+/// The load of [`apply`] on the measured walls: minus the momentum change of the particles, times dt [kg m].
 pub(super) fn load_walls(particles: &Particles, corrections: &mut Corrections, walls: &Walls) {
     let again = turns_out_again(corrections, walls);
     for row in particles.bands().into_iter().flatten() {
@@ -194,7 +194,7 @@ pub(super) fn load_walls(particles: &Particles, corrections: &mut Corrections, w
     }
 }
 
-/// Turns a displacement that leads from `start` to `place` out of all walls, and tells what each of them pushes.
+/// Turns a displacement from `start` to `place` out of all walls, and reports the push of each wall.
 #[inline]
 fn meet_walls(
     displacement: &mut Vector,
@@ -210,7 +210,7 @@ fn meet_walls(
         feel(&hit, push);
         touches = true;
     }
-    // Friction comes after all walls: in a corner one wall must not undo the way that the other pushes back.
+    // Friction is applied after all walls: in a corner one wall must not undo the push of the other.
     if touches {
         for hit in walls.hits(start, place) {
             let held = held_back(*displacement, &hit);
@@ -227,7 +227,7 @@ fn meet_walls(
     }
 }
 
-/// The part of a displacement along a wall that Coulomb friction takes away.
+/// The part of a displacement along a wall that Coulomb friction removes.
 #[inline]
 fn held_back(displacement: Vector, hit: &Hit) -> Vector {
     let tangential = displacement - hit.normal * displacement.dot(hit.normal);
@@ -270,7 +270,7 @@ pub(super) fn update_velocities(particles: &mut Particles, dt: Real, periodic: P
     wrap(particles, periodic, parallelism);
 }
 
-/// What rounding kept out of the positions.
+/// Stores the rounding errors of the positions.
 pub(super) fn carry_remainders(particles: &mut Particles, parallelism: Parallelism) {
     let (phases, displacements) = (&particles.phase, &particles.displacement);
     let (starts, positions) = (&particles.start, &particles.position);
@@ -281,7 +281,7 @@ pub(super) fn carry_remainders(particles: &mut Particles, parallelism: Paralleli
     });
 }
 
-/// The part of a displacement, and of what was left over before, that a position did not move by.
+/// The part of a displacement and of the old remainder that was lost in the rounding of a position.
 #[inline(always)]
 fn left_over(displacement: Vector, remainder: Vector, moved: Vector) -> Vector {
     (displacement + remainder) - moved

@@ -1,4 +1,4 @@
-//! The solver loop. `pipeline.rs` is the page to read first: the stages of a substep and when they run.
+//! The solver loop. `pipeline.rs` is the entry point for readers: the stages of a substep and their order.
 
 mod access;
 mod diagnose;

@@ -1,4 +1,4 @@
-//! The stages of a frame and of its substeps: the page to read first.
+//! The stages of a frame and of its substeps: the entry point for readers.
 
 /// One stage. A scene runs only the stages it needs, in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -41,7 +41,7 @@ pub enum Stage {
     MoveBodies,
     /// Moves the samples of bodies to their poses.
     SettleSamples,
-    /// Groups that asked for it change the velocities.
+    /// Velocity changes by groups that request this stage.
     FinishGroups,
     /// Makes the neighbour list valid for the projected positions, for effects and smoke.
     RefreshNeighbors,
@@ -56,7 +56,7 @@ pub enum Stage {
 }
 
 impl Stage {
-    /// The name under which the stage is timed and shown.
+    /// The name of the stage in timings and output.
     pub const fn name(self) -> &'static str {
         match self {
             Stage::Remove => "remove",
@@ -90,9 +90,9 @@ impl Stage {
 /// One step of applying the corrections of a group, in this order.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum CorrectionStep {
-    /// Moves that velocities do not follow.
+    /// Moves that do not change velocities.
     Shift,
-    /// Forces on the measured walls, from the corrections and from the particles that meet a wall.
+    /// Forces on the measured walls, from the corrections and from particles in contact with a wall.
     LoadWalls,
     /// Displacements; particles are kept out of walls.
     Displace,

@@ -1,7 +1,7 @@
-//! Settling: brings the start of a run to its rest density, without gravity and without velocities.
+//! Settling: relaxes the start of a run to its rest density, without gravity and without velocities.
 //!
-//! Each projection starts with a part of the last one's way, as long as it is pushed the same way (a momentum method):
-//! a push through a deep liquid then takes as many projections as the liquid has layers, not their square.
+//! Each projection starts with a fraction of the last displacement, if the push has the same direction (momentum
+//! method). Relaxation of a deep liquid then takes a number of projections linear in the layers, not quadratic.
 
 use super::integrate;
 use super::pipeline::Stage;
@@ -17,7 +17,7 @@ const SETTLED: f64 = 1e-5;
 const PROJECTIONS: f64 = 100.0;
 /// Projections per layer of a liquid that is at most [`NARROW`] wide.
 const PROJECTIONS_PER_LAYER: f64 = 3.0;
-/// Width up to which walls make a whole column rise [spacings]: they make the rows beside them too dense.
+/// Width up to which walls lift a whole column [spacings]: the density of the rows next to walls is too high.
 const NARROW: f64 = 16.0;
 /// Part of a displacement that the next projection starts with.
 const MOMENTUM: Real = 0.9;
@@ -66,8 +66,8 @@ impl World {
     }
 }
 
-/// Moves particles on by the part of their last way that [`carry_momentum`] kept. The column of displacements holds it
-/// until [`take_carried`].
+/// Moves particles by the fraction of their last displacement kept by [`carry_momentum`]. The column of displacements
+/// holds it until [`take_carried`].
 fn start_projection(particles: &mut Particles, parallelism: Parallelism) {
     particles.start.copy_from_slice(&particles.position);
     for (row, phase) in particles.phase.iter().enumerate() {
@@ -87,8 +87,8 @@ fn take_carried(particles: &mut Particles) -> Vec<Vector> {
     carried
 }
 
-/// Keeps a part of the way of a projection for the next one, where its push points the same way. Returns the longest
-/// way [m].
+/// Keeps a fraction of the displacement of a projection for the next one, if its push has the same direction. Returns
+/// the largest displacement [m].
 fn carry_momentum(particles: &mut Particles, carried: &[Vector]) -> f64 {
     let mut farthest: Real = 0.0;
     for ((displacement, phase), carried) in particles.displacement.iter_mut().zip(&particles.phase).zip(carried) {

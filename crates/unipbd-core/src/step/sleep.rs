@@ -1,4 +1,4 @@
-//! Liquids that sleep, as the loop sees them.
+//! Sleep of liquids in the frame loop.
 
 use super::world::{Parts, World};
 use crate::math::{Real, Vector};
@@ -13,20 +13,20 @@ impl World {
         });
     }
 
-    /// Whether all that could move sleeps: then the next frame is like the last.
+    /// Whether all movable rows sleep: then the next frame is equal to the last.
     pub(super) fn sleeps(&self) -> bool {
         let particles = &self.parts.particles;
         particles.asleep() > 0 && particles.asleep() == particles.len() && self.parts.emitters.is_none()
     }
 
-    /// Wakes what sleeps around some points.
+    /// Wakes the sleeping rows around some points.
     pub fn wake_near(&mut self, points: &[Vector]) {
         if !points.is_empty() && self.parts.particles.asleep() > 0 {
             self.rearrange(|sleep, parts| sleep.wake_near(points, &parts.particles));
         }
     }
 
-    /// A body that was woken by another, or by a joint, wakes the liquid around it.
+    /// A body that was woken by another body, or by a joint, wakes the liquid around it.
     pub(super) fn wake_around_bodies(&mut self) {
         let (particles, mut places) = (&self.parts.particles, Vec::new());
         let Some(rigid) = self.parts.rigid.as_ref().filter(|_| particles.asleep() > 0) else { return };
@@ -34,7 +34,7 @@ impl World {
         self.wake_near(&places);
     }
 
-    /// From now on nothing sleeps.
+    /// Wakes all rows and disables sleep.
     pub(super) fn wake_for_good(&mut self) {
         if self.parts.particles.asleep() > 0 {
             self.parts.particles.set_asleep(0, 0);
@@ -43,7 +43,7 @@ impl World {
         self.parts.sleep = None;
     }
 
-    /// Where some rows are, if anything sleeps that could feel them go.
+    /// The positions of some rows, if there are sleeping rows that their removal could affect.
     pub(crate) fn places(&self, rows: &[u32]) -> Vec<Vector> {
         let particles = &self.parts.particles;
         let rows = if particles.asleep() > 0 { rows } else { &[] };
@@ -66,7 +66,7 @@ impl World {
         self.wake_near(&places);
     }
 
-    /// Sleeping rows keep their pressure when the length of a substep changes: multipliers go with dt^2.
+    /// Sleeping rows keep their pressure when the length of a substep changes: multipliers are proportional to dt^2.
     pub(super) fn keep_pressure_asleep(&mut self, before: f64) {
         let particles = &mut self.parts.particles;
         if particles.asleep() > 0 && before > 0.0 && before != self.clock.dt {
@@ -76,7 +76,7 @@ impl World {
         }
     }
 
-    /// Brings the rows into the order that sleep decides on; bodies sleep and wake with their samples.
+    /// Sorts the rows into the order selected by sleep; bodies sleep and wake with their samples.
     fn rearrange(&mut self, decide: impl FnOnce(&mut LiquidSleep, &mut Parts)) {
         let Some(mut sleep) = self.parts.sleep.take() else { return };
         decide(&mut sleep, &mut self.parts);
@@ -97,7 +97,7 @@ impl World {
     fn rows_rearranged(&mut self) {
         self.parts.neighbors.invalidate();
         self.index_rows();
-        // Between two frames anybody may ask for neighbours.
+        // A caller may request neighbours between two frames.
         if self.clock.done == 0 || self.clock.done == self.clock.substeps {
             self.parts.particles.start_here();
             self.find_neighbors(self.parts.search_positions);
@@ -105,7 +105,7 @@ impl World {
     }
 }
 
-/// Bodies with a sample that wakes are woken, and with them all of their samples.
+/// Wakes bodies with a waking sample, together with all of their samples.
 fn wake_bodies(sleep: &mut LiquidSleep, parts: &mut Parts, rows: &RowIndex) {
     let (Some(rigid), particles) = (&mut parts.rigid, &parts.particles) else { return };
     let asleep = |row: usize| row >= particles.awake();

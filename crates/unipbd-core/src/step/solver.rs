@@ -7,8 +7,8 @@ use crate::effects::Effect;
 
 /// A running simulation. Made by [`Scene::build`](crate::scene::Scene::build).
 ///
-/// The frame is the unit of time: [`step_frame`](Solver::step_frame) does as many substeps as the
-/// frame asks for, which only the state at its start decides.
+/// The frame is the unit of time: [`step_frame`](Solver::step_frame) takes the number of substeps that
+/// follows from the state at the start of the frame.
 pub struct Solver {
     pub(crate) world: World,
     threads: Threads,
@@ -36,7 +36,7 @@ impl Solver {
         Solver { world: World::new(parts), threads: Threads::new(threads) }
     }
 
-    /// Advances by one frame and says what it did.
+    /// Advances by one frame and returns its counts.
     ///
     /// # Errors
     /// [`SolverError::Diverged`] when a particle is absurdly fast or its velocity not finite.
@@ -45,7 +45,7 @@ impl Solver {
     }
 
     /// Advances by one frame and calls `hook` at the start of each of its substeps, on the calling
-    /// thread: for custom force fields and for particles moved by a script.
+    /// thread: for custom force fields and for kinematic particles.
     ///
     /// ```no_run
     /// # use unipbd_core::{Solver, SolverError, Vector};
@@ -62,8 +62,8 @@ impl Solver {
     /// ```
     ///
     /// # Errors
-    /// What `hook` returns, and a [`SolverError`] turned into it. After an error of the hook the run
-    /// stands between two substeps; the next call goes on with the rest of the frame.
+    /// The error of `hook`, or a [`SolverError`] converted to its type. After an error of the hook the run
+    /// stands between two substeps; the next call continues with the rest of the frame.
     pub fn step_frame_with<E: From<SolverError>>(
         &mut self,
         mut hook: impl FnMut(&mut SubstepView<'_>) -> Result<(), E>,
@@ -134,7 +134,7 @@ impl Solver {
         })
     }
 
-    /// For what only looks: the loops of `work` run as those of the last step did.
+    /// Read-only access: the loops of `work` run on the same threads as the last step.
     pub(crate) fn look_on_threads<T: Send>(&self, work: impl FnOnce(&World) -> T + Send) -> T {
         self.threads.run(self.world.parts.particles.len(), |_| work(&self.world))
     }

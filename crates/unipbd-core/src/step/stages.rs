@@ -63,7 +63,7 @@ impl World {
         let Some(emitters) = &mut parts.emitters else { return };
         let changes = emitters.will_change(clock.time, clock.dt);
         let added = emitters.advance(clock.time, clock.dt, &mut parts.particles, &self.rows, &parts.neighbors);
-        // The throttle may have opened since `changes` was asked for.
+        // The throttle may have opened since the call of `changes`.
         if changes || added > 0 {
             self.population_changed();
         }
@@ -141,7 +141,7 @@ impl World {
         }
     }
 
-    /// Makes the list of a scene that keeps one valid outside of a substep.
+    /// Updates the list outside of a substep, in a scene that keeps one valid.
     pub(super) fn find_neighbors_if_listed(&mut self) {
         if self.plan.has_neighbors() {
             self.find_neighbors(self.parts.search_positions);
@@ -164,7 +164,7 @@ impl World {
                 self.apply_corrections();
             }
             self.iterated += 1;
-            // A violation is that of the positions the iteration started from.
+            // A violation belongs to the positions at the start of the iteration.
             let within = |group: &dyn ConstraintGroup| group.violation().unwrap_or(0.0) <= self.parts.tolerance;
             if self.parts.tolerance > 0.0 && groups.iter().all(|group| within(group.as_ref())) {
                 break;
@@ -269,7 +269,7 @@ impl World {
     fn finish_groups(&mut self) {
         let mut groups = std::mem::take(&mut self.parts.groups);
         for group in &mut groups {
-            // The group sees the velocities before its own changes.
+            // The group gets the velocities before its own changes.
             self.velocities.clone_from(&self.parts.particles.velocity);
             group.finish_velocities(World::now(&self.parts, &self.rows, &self.clock), &mut self.velocities);
             std::mem::swap(&mut self.parts.particles.velocity, &mut self.velocities);
@@ -289,7 +289,7 @@ impl World {
         self.parts.effects = effects;
     }
 
-    /// Warns where an effect is cut to what is stable, once until it no longer is.
+    /// Issues one warning when an effect is limited for stability; a new warning is possible after the limit ends.
     fn note_cut(&mut self, effect: &'static str, stable_fraction: f64) {
         let known = self.cut.iter().position(|name| *name == effect);
         match known {

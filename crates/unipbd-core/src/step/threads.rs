@@ -4,7 +4,7 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::parallel::{Parallelism, SERIAL_BELOW};
 
-/// The threads of a run. The pool is made when there is first enough to do for it, and anew in a
+/// The threads of a run. The pool is created on the first loop that is large enough, and again in a
 /// forked child, which inherits the memory of a pool but not its threads.
 pub(crate) struct Threads {
     count: usize,
@@ -13,12 +13,12 @@ pub(crate) struct Threads {
 
 struct Made {
     process: u32,
-    /// `None` where the system gave no threads.
+    /// `None` if the system provided no threads.
     pool: Option<Arc<ThreadPool>>,
 }
 
 impl Threads {
-    /// At most this many threads; with one, no pool is ever made.
+    /// At most this many threads; with one thread no pool is created.
     pub fn new(count: usize) -> Self {
         Threads { count: count.max(1), made: Mutex::new(None) }
     }
@@ -28,7 +28,7 @@ impl Threads {
         self.count
     }
 
-    /// The pool for a loop over this many rows, where one pays.
+    /// The pool for a loop over this many rows, if parallel execution pays off.
     pub fn pool(&self, rows: usize) -> Option<Arc<ThreadPool>> {
         if self.count == 1 || rows < SERIAL_BELOW {
             return None;
@@ -38,13 +38,13 @@ impl Threads {
         if made.as_ref().is_none_or(|made| made.process != process) {
             let pool = ThreadPoolBuilder::new().num_threads(self.count).build().ok().map(Arc::new);
             let inherited = made.replace(Made { process, pool });
-            // Its threads live in the parent: there is nothing here to be joined or woken.
+            // Its threads exist only in the parent: they cannot be joined or woken here.
             std::mem::forget(inherited);
         }
         made.as_ref().and_then(|made| made.pool.clone())
     }
 
-    /// Runs `work` where its loops find the pool, and tells it whether there is one.
+    /// Runs `work` inside the pool, and passes it whether there is a pool.
     pub fn run<T: Send>(&self, rows: usize, work: impl FnOnce(Parallelism) -> T + Send) -> T {
         match self.pool(rows) {
             Some(pool) => pool.install(|| work(Parallelism::Pool)),

@@ -9,7 +9,7 @@ pub(crate) struct Timings {
 }
 
 impl Timings {
-    /// Runs `work` and books its time under the name of the stage.
+    /// Runs `work` and adds its time to the name of the stage.
     pub fn time<T>(&mut self, stage: Stage, work: impl FnOnce() -> T) -> T {
         let begin = Instant::now();
         let result = work();

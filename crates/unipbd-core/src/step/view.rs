@@ -3,7 +3,7 @@ use super::world::World;
 use crate::math::{Real, Vector, Vector64};
 use crate::rigid::{Bodies, Pose, Twist};
 
-/// A run at the start of a substep, as a hook sees it
+/// A run at the start of a substep, as passed to a hook
 /// (see [`Solver::step_frame_with`](crate::Solver::step_frame_with)).
 pub struct SubstepView<'a> {
     world: &'a mut World,
@@ -21,8 +21,8 @@ impl<'a> SubstepView<'a> {
         self.world.clock.dt
     }
 
-    /// Adds to the acceleration of one row in this substep [m/s^2]. Particles moved by a script and
-    /// smoke do not feel it.
+    /// Adds to the acceleration of one row in this substep [m/s^2]. It has no effect on kinematic particles and
+    /// smoke.
     pub fn add_acceleration(&mut self, row: usize, acceleration: Vector) {
         self.accelerations_mut()[row] += acceleration;
     }
@@ -32,25 +32,25 @@ impl<'a> SubstepView<'a> {
         self.world.parts.particles.accelerations_mut()
     }
 
-    /// Sets the velocity of one row [m/s]: how a particle moved by a script is moved. The position
+    /// Sets the velocity of one row [m/s]: this moves a kinematic particle. The position
     /// follows in this substep.
     ///
     /// # Panics
-    /// Where the velocity is not finite.
+    /// If the velocity is not finite.
     pub fn set_velocity(&mut self, row: usize, velocity: Vector) {
         assert!(velocity.is_finite(), "velocities are finite");
         self.world.parts.particles.velocity[row] = velocity;
     }
 
-    /// Inverse mass of one row [1/kg]; 0 where it is moved by a script.
+    /// Inverse mass of one row [1/kg]; 0 for a kinematic particle.
     pub fn inverse_mass(&self, row: usize) -> Real {
         self.particles().inverse_masses()[row]
     }
 
-    /// Centre of mass and angle of a body, named by its place in [`SubstepView::bodies`].
+    /// Centre of mass and angle of a body, given by its index in [`SubstepView::bodies`].
     ///
     /// # Panics
-    /// Where there is no such body.
+    /// If there is no such body.
     pub fn body_pose(&self, body: u32) -> Pose {
         self.all_bodies().pose(body)
     }
@@ -58,26 +58,26 @@ impl<'a> SubstepView<'a> {
     /// Velocity of the centre of mass and angular velocity of a body.
     ///
     /// # Panics
-    /// Where there is no such body.
+    /// If there is no such body.
     pub fn body_velocity(&self, body: u32) -> Twist {
         self.all_bodies().velocity(body)
     }
 
-    /// Lets a force [N] and a torque about the centre of mass [N m] act on a body in this substep. Only a
-    /// dynamic one is moved.
+    /// Applies a force [N] and a torque about the centre of mass [N m] to a body in this substep. Only a
+    /// dynamic body is moved.
     ///
     /// # Panics
-    /// Where there is no such body, or the load is not finite.
+    /// If there is no such body, or the load is not finite.
     pub fn push_body(&mut self, body: u32, force: Vector64, torque: f64) {
         assert!(force.is_finite() && torque.is_finite(), "loads are finite");
         let dt = self.dt();
         self.all_bodies_mut().accelerate(body, force, torque, dt);
     }
 
-    /// Sets the velocity of a body: how one moved by a script is moved. It keeps it until it is given another.
+    /// Sets the velocity of a body: this moves a kinematic body. It keeps this velocity until another one is set.
     ///
     /// # Panics
-    /// Where there is no such body, or the velocity is not finite.
+    /// If there is no such body, or the velocity is not finite.
     pub fn set_body_velocity(&mut self, body: u32, velocity: Twist) {
         assert!(velocity.linear.is_finite() && velocity.angular.is_finite(), "velocities are finite");
         self.all_bodies_mut().set_velocity(body, velocity);

@@ -1,4 +1,4 @@
-//! Everything a run holds, and the frame loop over it.
+//! The complete state of a run, and the frame loop.
 
 use crate::bytes::held;
 use std::sync::OnceLock;
@@ -40,10 +40,10 @@ pub(crate) struct Parts {
     pub sleep: Option<LiquidSleep>,
     pub substeps: SubstepRule,
     pub iterations: u32,
-    /// Violation of every group at which the iteration stops.
+    /// Violation of every group below which the iteration stops.
     pub tolerance: f64,
     /// Pressure over density per multiplier, inverse mass and squared substep: the gradient of the
-    /// rest lattice falls a little short, and the multipliers are as much too large.
+    /// rest lattice is slightly too small, and the multipliers are too large by the same factor.
     pub pressure_scale: f64,
     pub gravity: Vector,
     pub spacing: f64,
@@ -52,7 +52,7 @@ pub(crate) struct Parts {
     pub parallelism: Parallelism,
 }
 
-/// Where a run is.
+/// Clock of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Clock {
     pub frame: u64,
@@ -61,14 +61,14 @@ pub(crate) struct Clock {
     /// Length of the last substep [s].
     pub dt: f64,
     pub substeps: u32,
-    /// Substeps done of a frame that an error interrupted.
+    /// Substeps done of a frame that was interrupted by an error.
     pub done: u32,
     pub list_builds: u32,
-    /// Largest pressure over density that a fluid may push with [m^2/s^2].
+    /// Limit of the pressure over density of a fluid [m^2/s^2].
     pub pressure_limit: f64,
-    /// Part of their stiffness that fluids have.
+    /// Fraction of the full stiffness of the fluids.
     pub stiffness: f64,
-    /// Whether the last frame was denied substeps.
+    /// Whether the last frame took fewer substeps than demanded.
     pub capped: bool,
     /// Fastest dense particle after the last substep [m/s].
     pub speed: f64,
@@ -76,21 +76,21 @@ pub(crate) struct Clock {
     pub generation: u64,
 }
 
-/// Where a frame began.
+/// State at the start of a frame.
 pub(crate) struct Begun {
     removed: u64,
     ids: u32,
     builds: u64,
 }
 
-/// Whether the rows are still those of the same particles.
+/// Whether the rows still belong to the same particles.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Population {
     Same,
     Changed,
 }
 
-/// What is measured after a frame, once somebody asks for it, by row.
+/// Measurements after a frame, made on first access, by row.
 #[derive(Default)]
 pub(crate) struct Measured {
     /// Density errors at the positions of the last frame.
@@ -110,11 +110,11 @@ pub(crate) struct World {
     pub(super) measured: Measured,
     pub(super) corrections: Corrections,
     pub(super) changes: Changes,
-    /// Room for the velocities that groups change.
+    /// Buffer for the velocity changes by groups.
     pub(super) velocities: Vec<Vector>,
-    /// Why the last frame took the substeps it took.
+    /// The criterion for the number of substeps of the last frame.
     pub(super) choice: Choice,
-    /// Effects that are cut to what is stable, and were warned of.
+    /// Effects that are limited for stability, with a warning already issued.
     pub(super) cut: Vec<&'static str>,
     /// Iterations of the frame so far.
     pub(super) iterated: u32,
@@ -195,7 +195,7 @@ impl World {
         self.index_rows();
     }
 
-    /// Brings the row index up to date, where anyone asks for it.
+    /// Updates the row index, if it is needed.
     pub fn index_rows(&mut self) {
         if self.needs_rows {
             self.rows.rebuild(self.parts.particles.ids());
@@ -212,7 +212,7 @@ impl World {
         self.index_rows();
     }
 
-    /// One frame, or the rest of one that an error interrupted.
+    /// One frame, or the rest of a frame that was interrupted by an error.
     pub fn frame(&mut self) -> Result<FrameReport, SolverError> {
         let begun = self.begin_frame()?;
         while self.begin_substep() {
@@ -281,7 +281,7 @@ impl World {
         })
     }
 
-    /// Makes the list of a saved state again, and forgets what was measured before.
+    /// Rebuilds the list of a saved state, and discards earlier measurements.
     pub fn restore_list(&mut self, list: &SavedList) {
         self.measured = Measured::default();
         self.parts.neighbors.restore(&self.parts.particles, list, self.parts.parallelism);
@@ -291,7 +291,7 @@ impl World {
         self.index_rows();
     }
 
-    /// Rows were edited between two frames: speeds, ids and lists are found again.
+    /// Rows were edited between two frames: speeds, ids and lists are rebuilt.
     pub fn edited(&mut self, population: Population) {
         self.measured = Measured::default();
         if population == Population::Changed {
@@ -302,7 +302,7 @@ impl World {
         self.find_neighbors_if_listed();
     }
 
-    /// This moment as groups and effects see it.
+    /// The current moment, as passed to groups and effects.
     pub(super) fn now<'a>(parts: &'a Parts, rows: &'a RowIndex, clock: &Clock) -> Substep<'a> {
         Substep {
             dt: clock.dt as Real,

@@ -1,4 +1,4 @@
-//! The part of a kernel that lies inside a wall, by tables made once.
+//! The part of a kernel that lies inside a wall, from precomputed tables.
 //!
 //! With Phi(a, b) the integral of W over x < a, y < b, any axis-aligned box, corner or half-plane
 //! is a sum of a few values of Phi: walls count in the density as if they were fluid at rest.
@@ -8,8 +8,8 @@ use crate::math::{Real, Vector, real};
 
 const CELLS: usize = 128;
 const NODES: usize = CELLS + 1;
-/// The gradient of a wall that upholds a liquid is this much larger at half a spacing. With 0.15 to 0.4 columns
-/// stand at their level; the more, the more a wall holds back what moves along it.
+/// Relative increase of the gradient of a wall at half a spacing, for walls that support a liquid. With 0.15 to 0.4
+/// columns keep their level; a larger value increases the resistance of a wall to motion along it.
 const STEEPER: f64 = 0.25;
 
 /// Tables of the integral of a kernel over quadrants and half-planes.
@@ -35,14 +35,14 @@ impl Coverage {
 
     /// Tables for this kernel, of walls that hold the first row of a liquid at half a spacing.
     ///
-    /// Two particles push each other with the sum of both multipliers, a wall has none to add: where the first
-    /// row belongs it pushes with too little, and the row comes nearer until the gradient has grown by what is
-    /// missing. So distances are stretched about half a spacing, where the part behind the wall stays what it
-    /// is while its gradient grows; at the kernel radius both are the true ones. Value and gradient remain a
-    /// pair: what pushes is still the gradient of one potential, and nothing heats.
+    /// Two particles push each other with the sum of both multipliers, but a wall has no multiplier: at the nominal
+    /// position of the first row its push is too small, and the row moves closer until the gradient has grown
+    /// enough. So distances are stretched about half a spacing: the part behind the wall is unchanged there
+    /// and its gradient grows; at the kernel radius both have their true values. Value and gradient remain
+    /// consistent: the push is the gradient of one potential, and adds no energy.
     ///
     /// With u = d - dx/2: seen(d) = d + b u (1 - u/(h - dx/2))^2 for u > 0, d + b u for 0 < d < dx/2, and
-    /// behind the surface the shift stays what it is there.
+    /// behind the surface the shift keeps its value at the surface.
     pub fn upholding<K: Shape>(kernel: &Kernel<K>, spacing: f64) -> Self {
         let reach = f64::from(kernel.radius()) - 0.5 * spacing;
         Coverage::tabulate(kernel, |distance| {
@@ -53,7 +53,7 @@ impl Coverage {
         })
     }
 
-    /// Tables of a kernel that sees a wall at another distance than the true one: `stretch` tells that and its
+    /// Tables of a kernel with a modified wall distance: `stretch` returns the modified distance and its
     /// derivative.
     fn tabulate<K: Shape>(kernel: &Kernel<K>, stretch: impl Fn(f64) -> (f64, f64)) -> Self {
         let radius = f64::from(kernel.radius());
@@ -184,7 +184,7 @@ mod tests {
     fn match_differences(coverage: &Coverage) {
         let step = 0.08;
         for i in -6..=6 {
-            // Not across the surface: there the gradient of walls that uphold jumps.
+            // Not across the surface: the gradient of supporting walls has a jump there.
             let a = 0.37 * i as Real + 0.15;
             let (plus, minus) = (coverage.behind(a + step).0, coverage.behind(a - step).0);
             let (slope, difference) = (coverage.behind(a).1, (plus - minus) / (2.0 * step));

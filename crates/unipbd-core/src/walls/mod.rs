@@ -1,4 +1,4 @@
-//! Static walls: distances, and how much of a kernel lies inside them.
+//! Static walls: distances, and the part of a kernel inside them.
 
 mod coverage;
 mod geometry;

@@ -1,11 +1,11 @@
-//! Broad phase: which pieces can touch. Boxes are sorted into square cells; those much larger than
+//! Broad phase: pairs of pieces that can touch. Boxes are sorted into square cells; boxes much larger than
 //! a cell are compared with all others.
 
 use super::pieces::{Bounds, Pieces};
 use crate::math::Vector64;
 
-/// Pairs of pieces (the smaller index first) and of pieces with half-planes, whose boxes overlap
-/// and which `allowed` lets collide; sorted. Half-plane k appears as index `pieces + k`.
+/// Pairs of pieces (the smaller index first) and of pieces with half-planes, with overlapping boxes
+/// and accepted by `allowed`; sorted. Half-plane k has the index `pieces + k`.
 pub(super) fn pairs(pieces: &Pieces, fat: &[Bounds], allowed: impl Fn(u32, u32) -> bool) -> Vec<(u32, u32)> {
     let mut found = Vec::with_capacity(3 * fat.len());
     let cell = 2.0 * median_extent(fat);
@@ -49,7 +49,7 @@ fn median_extent(fat: &[Bounds]) -> f64 {
     *extents.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// Every box is listed in each cell it covers; a pair counts in the one cell where both begin.
+/// Every box is listed in each cell it covers; a pair is reported only in the cell where both begin.
 fn pairs_in_cells(fat: &[Bounds], small: &[u32], cell: f64, mut found: impl FnMut(u32, u32)) {
     // Rounding down by a comparison: without SSE 4.1 `floor` is a call.
     let column = |x: f64| {

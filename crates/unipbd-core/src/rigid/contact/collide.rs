@@ -1,14 +1,14 @@
-//! Narrow phase: where two rounded convex pieces touch, or are about to.
+//! Narrow phase: contact features of two rounded convex pieces that touch or are close.
 //!
-//! Vertices of each piece are tested against the faces of the other, both ways alike, so that
-//! neither piece is preferred and a mirrored pair gives mirrored contacts. Where even the
-//! unrounded cores overlap (deep starts), vertices would pull in all directions: convex solids are then
-//! parted over a single face. In a piece cut from a concave solid that face may be the wrong way out.
+//! Vertices of each piece are tested against the faces of the other, in both directions, so that
+//! neither piece is preferred and a mirrored pair gives mirrored contacts. If the unrounded cores
+//! overlap (deep starts), vertices would push in all directions: convex solids are then
+//! separated over a single face. In a piece cut from a concave solid that face may point the wrong way.
 
 use super::pieces::{HalfPlane, PieceView, Pieces};
 use crate::math::Vector64;
 
-/// A feature where two pieces touch or soon may.
+/// A contact feature of two pieces that touch or are close.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Touch {
     /// Unit normal, towards the first piece.
@@ -22,28 +22,28 @@ pub(super) struct Touch {
     pub feature: FeaturePair,
 }
 
-/// What touches: names a point for recognising it in the next substep, and for measuring it again there.
+/// The features of a contact point. They identify the point in the next substep, and allow a new measurement.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct FeaturePair {
-    /// The vertex that touches, with [`OF_SECOND`] where it is one of the second piece.
+    /// The contact vertex, with the flag [`OF_SECOND`] for a vertex of the second piece.
     pub vertex: u32,
-    /// The face of the other piece it lies over, or the vertex it is closest to, with [`VERTEX`].
+    /// The face of the other piece below the vertex, or the closest vertex, with the flag [`VERTEX`].
     on: u32,
 }
 
-/// Marks a vertex of the second piece.
+/// Flag of a vertex of the second piece.
 const OF_SECOND: u32 = 1 << 31;
-/// Marks a vertex in feature of a face.
+/// Flag of a vertex in place of a face.
 const VERTEX: u32 = 1 << 31;
 
-/// How long what was found stays so.
+/// Validity of the features found.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Proximity {
-    /// Farther apart than the margin.
+    /// The distance exceeds the margin.
     Apart,
-    /// The same vertices and faces touch while the pieces hardly move.
+    /// The same vertices and faces stay in contact for small motions of the pieces.
     Near,
-    /// Cores overlap: which way out is to be asked again.
+    /// Cores overlap: the separation direction must be searched again.
     Overlapping,
 }
 
@@ -86,7 +86,7 @@ pub(super) fn between(a: &PieceView, b: &PieceView, margin: f64, out: &mut Vec<T
     if overlap { Proximity::Overlapping } else { Proximity::Near }
 }
 
-/// Measures a feature again that [`between`] found, where the pieces are now.
+/// Measures a feature of [`between`] again, at the current position of the pieces.
 pub(super) fn again(a: &PieceView, b: &PieceView, feature: FeaturePair) -> Touch {
     if feature.vertex & OF_SECOND != 0 {
         return again(b, a, FeaturePair { vertex: feature.vertex ^ OF_SECOND, on: feature.on }).reversed();
@@ -99,12 +99,12 @@ pub(super) fn again(a: &PieceView, b: &PieceView, feature: FeaturePair) -> Touch
     over_face(a, b, p, ((p - b.vertices[on]).dot(normal), normal), feature)
 }
 
-/// The same against a half-plane.
+/// The same for a half-plane.
 pub(super) fn again_on_half_plane(a: &PieceView, plane: &HalfPlane, feature: FeaturePair) -> Touch {
     on_half_plane(a, plane, a.vertices[feature.vertex as usize], feature.vertex)
 }
 
-/// The vertex `p` of `a` at a height over a face of `b` with this normal.
+/// Contact of the vertex `p` of `a` at a height over a face of `b` with this normal.
 fn over_face(
     a: &PieceView,
     b: &PieceView,
@@ -116,7 +116,7 @@ fn over_face(
     Touch { normal, on_a, on_b, gap: height - a.radius - b.radius, feature }
 }
 
-/// The vertex `p` of `a` and `q` of `b`.
+/// Contact of the vertices `p` of `a` and `q` of `b`.
 fn at_vertices(a: &PieceView, b: &PieceView, p: Vector64, q: Vector64, feature: FeaturePair) -> Touch {
     let distance = (p - q).length();
     let normal = if distance > 0.0 { (p - q) / distance } else { Vector64::Y };
@@ -134,7 +134,7 @@ pub(super) fn discs(pieces: &Pieces, (a, b): (u32, u32), margin: f64) -> Option<
 }
 
 impl Touch {
-    /// The same contact with the pieces named the other way round.
+    /// The same contact with the pieces swapped.
     pub fn reversed(self) -> Touch {
         Touch {
             normal: -self.normal,
@@ -146,7 +146,7 @@ impl Touch {
     }
 }
 
-/// Largest separation of `a` from the faces of `b`; none as soon as it exceeds `limit`.
+/// Largest separation of `a` from the faces of `b`; `None` as soon as it exceeds `limit`.
 fn separation(a: &PieceView, b: &PieceView, limit: f64) -> Option<f64> {
     let mut largest = f64::NEG_INFINITY;
     for (&v, &n) in b.vertices.iter().zip(b.normals) {
@@ -163,8 +163,8 @@ fn lowest(a: &PieceView, point: Vector64, normal: Vector64) -> f64 {
     a.vertices.iter().map(|&p| (p - point).dot(normal)).fold(f64::INFINITY, f64::min)
 }
 
-/// Adds the vertices of `a` that lie over a face of `b`, and returns which do, near or far, a bit each.
-/// `named` restores the order of the pieces.
+/// Adds the vertices of `a` that lie over a face of `b`, and returns a bit mask of all such vertices, near or
+/// far. `named` restores the order of the pieces.
 fn vertices_on_faces(
     a: &PieceView,
     b: &PieceView,
@@ -174,7 +174,7 @@ fn vertices_on_faces(
 ) -> u64 {
     let mut over = 0;
     let radii = a.radius + b.radius;
-    // A rounded vertex may reach a little past the end of a face; a disc ends exactly there.
+    // A rounded vertex may lie slightly beyond the end of a face; a disc must not.
     let overhang = if a.is_round() { 0.0 } else { 0.25 * radii };
     for (k, &p) in a.vertices.iter().enumerate().filter(|&(k, _)| a.sampled[k]) {
         let Some((face, height)) = face_below(p, b) else { continue };
@@ -193,7 +193,7 @@ fn vertices_on_faces(
     over
 }
 
-/// The face of a piece that a point is farthest above (or least below), and how far.
+/// The face of a piece with the largest signed distance from a point, and the distance.
 fn face_below(p: Vector64, piece: &PieceView) -> Option<(usize, f64)> {
     let mut best: Option<(usize, f64)> = None;
     let mut cut = f64::NEG_INFINITY;
@@ -205,12 +205,12 @@ fn face_below(p: Vector64, piece: &PieceView) -> Option<(usize, f64)> {
             best = Some((k, height));
         }
     }
-    // Inside the solid but beyond a cut lies another of its pieces, which then has the say.
+    // A point inside the solid beyond a cut belongs to another piece of the solid, which handles it.
     best.filter(|&(_, height)| !piece.is_round() && (height >= 0.0 || cut <= 0.0))
 }
 
-/// Adds the closest pair of vertices neither of which is over a face: for discs, and for corners that
-/// meet. Without this rule flush boxes would catch each other at their corners.
+/// Adds the closest pair of vertices if neither is over a face: for discs, and for corner contacts.
+/// Without this rule the corners of flush boxes would collide.
 fn closest_vertices(a: &PieceView, b: &PieceView, over: (u64, u64), margin: f64, out: &mut Vec<Touch>) {
     let free = |piece: &PieceView, over: u64, k: usize| piece.sampled[k] && over >> (k % 64) & 1 == 0;
     let mut best: Option<(f64, usize, usize)> = None;
@@ -227,7 +227,7 @@ fn closest_vertices(a: &PieceView, b: &PieceView, over: (u64, u64), margin: f64,
     let reach = a.radius + b.radius;
     let known = |touch: &Touch| (touch.on_a - p).length_squared() < reach * reach;
     if square.sqrt() - reach < margin && !out.iter().any(known) {
-        // A disc has one vertex: the corner of the other is the better name.
+        // A disc has one vertex: the corner of the other piece identifies the contact better.
         out.push(if b.is_round() && !a.is_round() {
             at_vertices(b, a, q, p, FeaturePair { vertex: j as u32, on: i as u32 | VERTEX }).reversed()
         } else {
@@ -236,7 +236,7 @@ fn closest_vertices(a: &PieceView, b: &PieceView, over: (u64, u64), margin: f64,
     }
 }
 
-/// Cores that overlap: one direction out, over the face that needs the shortest way.
+/// Overlapping cores: one separation direction, over the face of least penetration.
 fn overlapping_cores(a: &PieceView, b: &PieceView, out: &mut Vec<Touch>) {
     let (over_b, over_a) = (shallowest_face(a, b), shallowest_face(b, a));
     let least = |way: Option<(usize, f64)>| way.map_or(f64::NEG_INFINITY, |(_, depth)| depth);

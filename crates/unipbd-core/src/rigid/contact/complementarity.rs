@@ -1,6 +1,6 @@
-//! The smallest contact problem, solved exactly: one body pair that touches at one or two points.
+//! Exact solution of the smallest contact problem: one body pair with one or two contact points.
 
-/// InverseMass of two points to impulses at them: a symmetric matrix, `off` beside the diagonal.
+/// Inverse effective mass of two points: a symmetric matrix with the off-diagonal entry `off`.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Coupling {
     pub first: f64,
@@ -8,9 +8,9 @@ pub(super) struct Coupling {
     pub off: f64,
 }
 
-/// Finds impulses at or above `lower` after which no point moves slower than 0, and those above their
-/// bound not faster: a linear complementarity problem, by trying which points act.
-/// `motion` is the motion with the impulses `old`; with one point give the second no response.
+/// Finds impulses of at least `lower` such that no point has a negative velocity, and points above their
+/// bound have velocity zero: a linear complementarity problem, solved by enumeration of the active points.
+/// `motion` is the motion with the impulses `old`; with one point, pass zero response for the second.
 #[inline]
 pub(super) fn solve(coupling: &Coupling, motion: [f64; 2], old: [f64; 2], lower: [f64; 2]) -> [f64; 2] {
     let Coupling { first, second, off } = *coupling;
@@ -22,7 +22,7 @@ pub(super) fn solve(coupling: &Coupling, motion: [f64; 2], old: [f64; 2], lower:
     }
     let determinant = first * second - off * off;
     if determinant < 1e-6 * first * second {
-        // Both points move alike, as on a body that cannot turn: half each.
+        // Both points have the same motion, as on a body without rotation: half of the impulse each.
         return [raise(2.0 * first, motion[0], old[0], lower[0]), raise(2.0 * second, motion[1], old[1], lower[1])];
     }
     let both = [
@@ -32,7 +32,7 @@ pub(super) fn solve(coupling: &Coupling, motion: [f64; 2], old: [f64; 2], lower:
     if both[0] >= lower[0] && both[1] >= lower[1] {
         return both;
     }
-    // One point acts, the other is at its bound and must not approach.
+    // One point is active; the other is at its bound and must not approach.
     let one = old[0] - (motion[0] + off * (lower[1] - old[1])) / first;
     if one >= lower[0] && motion[1] + off * (one - old[0]) + second * (lower[1] - old[1]) >= 0.0 {
         return [one, lower[1]];

@@ -1,14 +1,14 @@
-//! A point of a contact, and what is read once or seldom of it.
+//! A contact point, and the rarely read data of a contact.
 
 use super::collide::FeaturePair;
 use crate::rigid::Surface;
 
-/// One point of a contact, as the sweeps see it.
+/// One contact point in the sweeps.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Point {
     /// Distance of the surfaces at the start of the substep [m].
     pub gap: f64,
-    /// Impulses of this substep, the start of the next.
+    /// Impulses of this substep, the initial values of the next.
     pub normal_impulse: f64,
     pub tangent_impulse: f64,
     /// Moments about both centres of mass of unit impulses along normal and tangent [m].
@@ -19,25 +19,25 @@ pub(crate) struct Point {
 }
 
 impl Point {
-    /// Takes over the impulses of a point in an earlier substep, times a factor.
+    /// Copies the impulses of a point in an earlier substep, times a factor.
     pub fn keep(&mut self, old: &Point, factor: f64) {
         self.normal_impulse = old.normal_impulse * factor;
         self.tangent_impulse = old.tangent_impulse * factor;
     }
 }
 
-/// What else belongs to a contact.
+/// Rarely read data of a contact.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct ContactCache {
     pub pair: u32,
-    /// The wall touched, or `NONE`.
+    /// The wall, or `NONE`.
     pub wall: u32,
     pub surface: Surface,
-    /// Which vertices and faces touch at each point.
+    /// The vertex and face of each point.
     pub(super) features: [FeaturePair; 2],
     /// Normal velocities at the start of the substep [m/s].
     pub approach: [f64; 2],
-    /// Impulses of the rebound [kg m/s]; 0 where nothing rebounded.
+    /// Impulses of the rebound [kg m/s]; 0 without a rebound.
     pub rebound: [f64; 2],
 }
 

@@ -1,4 +1,4 @@
-//! The contacts that a search found, and the substep that it searches for.
+//! The contacts of a search, and the substep of the search.
 
 use super::collide::Touch;
 use super::contact_cache::ContactCache;
@@ -10,28 +10,28 @@ use super::pairs::SearchRecord;
 pub(super) struct ContactSet {
     pub contacts: Vec<Contact>,
     pub caches: Vec<ContactCache>,
-    /// Pairs that were sought anew, and what that was with.
+    /// Pairs that were searched again, with the record of the search.
     #[serde(skip)]
     pub renewed: Vec<(u32, SearchRecord)>,
-    /// Room for the search.
+    /// Buffer of the search.
     #[serde(skip)]
     pub touches: Vec<Touch>,
 }
 
-/// A substep, as the search sees it.
+/// Parameters of a substep for the search.
 #[derive(Clone, Copy)]
 pub(super) struct StepContext {
     /// Its length [s].
     pub dt: f64,
     /// Gravity [m/s^2].
     pub gravity: f64,
-    /// What the impulses of the last substep are worth in this one.
+    /// Scale factor of the impulses of the last substep in this one.
     pub kept: f64,
-    /// What slides slower than this sticks [m/s].
+    /// Sliding speed below which a contact sticks [m/s].
     pub slow: f64,
 }
 
-/// The contacts of a substep with what belongs to them, row by row.
+/// The contacts of a substep with their cache data, row by row.
 pub(crate) type Rows<'a> = (&'a mut [Contact], &'a mut [ContactCache]);
 
 impl ContactSet {
@@ -47,7 +47,7 @@ impl ContactSet {
         self.renewed.append(&mut other.renewed);
     }
 
-    /// Forgets contacts beyond so many.
+    /// Removes contacts beyond this number.
     pub fn truncate(&mut self, length: usize) {
         self.contacts.truncate(length);
         self.caches.truncate(length);

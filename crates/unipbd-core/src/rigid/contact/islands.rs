@@ -1,5 +1,5 @@
-//! Sleep by islands: bodies that touch fall asleep together, once all of them have been slow for a
-//! while, and wake together. Impulses are kept, so that a woken pile stands as it stood.
+//! Sleep by islands: connected bodies fall asleep together, once all of them have been slow for a
+//! while, and wake together. Impulses are kept, so that a woken pile keeps its state.
 
 use super::joint::Linked;
 use super::manifold::Contact;
@@ -7,12 +7,12 @@ use super::pieces::NONE;
 use super::union_find::UnionFind;
 use crate::rigid::Bodies;
 
-/// When bodies fall asleep.
+/// Sleep thresholds of bodies.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SleepSettings {
     /// Speed of the fastest point of a body, |v| + |w| R, below which it counts as at rest [m/s].
     pub speed: f64,
-    /// How long a whole island must have been at rest [s].
+    /// Rest time of a whole island before it sleeps [s].
     pub delay: f64,
 }
 
@@ -22,17 +22,17 @@ impl Default for SleepSettings {
     }
 }
 
-/// Speed that a body may gather while it counts as at rest, over the speed below which it does.
+/// Allowed gain of speed of a body at rest, relative to the speed threshold.
 const GATHERED: f64 = 0.25;
 
-/// Rest times of bodies, and which bodies fell asleep together.
+/// Rest times of bodies, and the islands of sleeping bodies.
 #[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Islands {
-    /// How long each body has been at rest [s].
+    /// Rest time of each body [s].
     rest: Vec<f64>,
     /// Its lowest speed since then [m/s].
     calmest: Vec<f64>,
-    /// The island each sleeping body belongs to.
+    /// The island of each sleeping body.
     island: Vec<u32>,
     touching: UnionFind,
     /// The shortest rest time of each island, at its root.
@@ -56,7 +56,7 @@ impl Islands {
         }
     }
 
-    /// Wakes the islands that a moving body touches in this substep; tells whether there were any.
+    /// Wakes the islands that a moving body touches in this substep; returns whether any was woken.
     pub fn wake_touched(&mut self, bodies: &mut Bodies, contacts: &[Contact], joints: &[Linked], dt: f64) -> bool {
         let mut woken = false;
         if !bodies.asleep.contains(&true) {
@@ -110,7 +110,7 @@ impl Islands {
         self.put_to_rest(bodies, settings)
     }
 
-    /// Puts bodies to sleep at once: the fluid that carries them does.
+    /// Puts bodies to sleep at once, when the fluid around them falls asleep.
     pub fn put_to_sleep(
         &mut self,
         bodies: &mut Bodies,
@@ -137,7 +137,7 @@ impl Islands {
         for id in 0..bodies.len() {
             let velocity = &bodies.velocities[id];
             let speed = velocity.linear.length() + velocity.angular.abs() * bodies.reaches[id];
-            // What gathers speed is not at rest, however slow: a block begins to slide like that.
+            // A body with increasing speed is not at rest, even if it is slow: a block starts to slide in this way.
             let gathers = speed > self.calmest[id] + GATHERED * settings.speed;
             let still = speed < settings.speed && !bodies.pushed[id] && !gathers;
             self.rest[id] = if still { self.rest[id] + frame_time } else { 0.0 };
@@ -145,7 +145,7 @@ impl Islands {
         }
     }
 
-    /// Links two dynamic bodies; what touches a moving script cannot rest.
+    /// Links two dynamic bodies; a body in contact with a moving kinematic body cannot rest.
     fn unite(&mut self, bodies: &Bodies, a: u32, b: u32) {
         let scripted = |id: u32| !bodies.is_dynamic(id as usize) && bodies.is_active(id as usize);
         match (bodies.is_dynamic(a as usize), bodies.is_dynamic(b as usize)) {

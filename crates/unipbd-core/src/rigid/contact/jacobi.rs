@@ -1,5 +1,5 @@
-//! A Jacobi sweep over contacts: each computes its push from the same state into its own slot, then
-//! each body gathers its pushes in the order of the contacts. The same bits on any number of threads.
+//! A Jacobi sweep over contacts: each contact computes its push from the same state into its own slot, then
+//! each body sums its pushes in the order of the contacts. The result is bitwise equal for any number of threads.
 
 use super::contact_cache::ContactCache;
 use super::manifold::Contact;
@@ -24,7 +24,7 @@ pub(crate) struct Jacobi {
 }
 
 impl Jacobi {
-    /// Lists the contacts of each body, where sweeps will run in parallel.
+    /// Lists the contacts of each body, if sweeps run in parallel.
     pub fn index(&mut self, contacts: &[Contact], bodies: usize) {
         if !is_parallel(contacts) {
             return;
@@ -91,7 +91,7 @@ impl Jacobi {
         });
     }
 
-    /// Adds the motion that the summed pushes cause.
+    /// Adds the motion by the summed pushes.
     pub fn apply(&self, inverse_masses: &[InverseMass], motion: &mut [Twist]) {
         for ((motion, push), response) in motion.iter_mut().zip(&self.sums).zip(inverse_masses) {
             motion.linear += push.linear * response.linear;

@@ -1,24 +1,24 @@
 //! Joints between two bodies, or a body and the world: hinges with motors, and distances.
 //!
-//! Equality constraints J u = 0 in the same split-Jacobi sweep as the contacts. Impulses act where the
-//! anchors are at the start of a substep, and stop the motion of the anchors in its middle: as in leapfrog
-//! schemes (SHAKE, Ryckaert et al. 1977) a body on a hinge so keeps its energy as it turns. What drift
-//! remains is removed from the positions alone. A distance with compliance is a spring, solved as in Macklin et al. 2016.
+//! Equality constraints J u = 0 in the same split-Jacobi sweep as the contacts. Impulses act at the
+//! anchors at the start of a substep, and stop the motion of the anchors at its middle. As in leapfrog
+//! schemes (SHAKE, Ryckaert et al. 1977), this conserves the energy of a rotating body on a hinge. The remaining drift
+//! is removed from the positions alone. A distance with compliance is a spring, solved as in Macklin et al. 2016.
 
 use super::manifold::entry;
 use super::pieces::NONE;
 use crate::math::Vector64;
 use crate::rigid::{Bodies, InverseMass, Pose, Twist};
 
-/// What a joint keeps.
+/// The constraint of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum JointKind {
-    /// The anchors coincide; the bodies may turn.
+    /// The anchors coincide; the bodies may rotate.
     Hinge {
-        /// Drives the relative angular velocity, if there is one.
+        /// Optional motor for the relative angular velocity.
         motor: Option<Motor>,
     },
-    /// The anchors keep a distance.
+    /// The distance of the anchors is constant.
     Distance {
         /// Rest distance [m].
         length: f64,
@@ -29,21 +29,21 @@ pub enum JointKind {
     },
 }
 
-/// Whether a distance may become smaller.
+/// Lower limit of a distance joint.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum DistanceRule {
-    /// A rod: neither smaller nor larger.
+    /// A rod: fixed distance.
     Exact,
-    /// A rope: never larger.
+    /// A rope: maximum distance.
     AtMost,
 }
 
-/// Drives a hinge.
+/// The motor of a hinge.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Motor {
-    /// Wanted angular velocity of the first body relative to the second [rad/s].
+    /// Target angular velocity of the first body relative to the second [rad/s].
     pub speed: f64,
-    /// Largest torque it has [N m].
+    /// Maximum torque [N m].
     pub max_torque: f64,
 }
 
@@ -52,13 +52,13 @@ pub struct Motor {
 pub struct Joint {
     /// First body.
     pub body: u32,
-    /// Second body; none is the world.
+    /// Second body; `None` is the world.
     pub other: Option<u32>,
     /// Anchor on the first body [m].
     pub anchor: Vector64,
     /// Anchor on the second body, or in the world [m].
     pub other_anchor: Vector64,
-    /// What it keeps.
+    /// The constraint.
     pub kind: JointKind,
 }
 
@@ -66,14 +66,14 @@ pub struct Joint {
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Linked {
     pub joint: Joint,
-    /// Impulse on the first body: a vector of a hinge, or along the line in x [kg m].
+    /// Impulse on the first body: a vector for a hinge, or the component along the line in x [kg m].
     pub impulse: Vector64,
     /// Impulse of the motor [kg m^2].
     pub motor: f64,
-    /// Arms of the anchors at the start of the substep, where impulses act, and in its middle.
+    /// Arms of the anchors at the start of the substep (point of application of impulses) and at its middle.
     arms: (Vector64, Vector64),
     middle: (Vector64, Vector64),
-    /// Anchor of the first body seen from that of the second, at the start of the substep [m].
+    /// Position of the first body's anchor relative to the second body's anchor, at the start of the substep [m].
     offset: Vector64,
     split: (InverseMass, InverseMass),
     dt: f64,
@@ -89,7 +89,7 @@ impl Linked {
         (self.joint.body, self.joint.other.unwrap_or(NONE))
     }
 
-    /// Anchors and arms, with the bodies turned on by half of `displacements`.
+    /// Computes anchors and arms, with the bodies rotated by half of `displacements`.
     fn place(&mut self, bodies: &Bodies, displacements: &[Twist]) {
         let arm = |id: u32, anchor: Vector64, ahead: f64| {
             let pose = if id == NONE { Pose::default() } else { bodies.poses[id as usize] };
@@ -131,7 +131,7 @@ impl Linked {
         entry(motion, a).at(self.middle.0) - entry(motion, b).at(self.middle.1)
     }
 
-    /// One iteration from the given displacements: pushes on the first body, and to be taken from the second.
+    /// One iteration from the given displacements: pushes to add to the first body and to subtract from the second.
     pub fn solve(&mut self, displacements: &[Twist]) -> (Twist, Twist) {
         match self.joint.kind {
             JointKind::Hinge { motor } => {
@@ -199,7 +199,7 @@ impl Linked {
         (a.linear + b.linear + at_a * a.angular + at_b * b.angular).max(f64::MIN_POSITIVE)
     }
 
-    /// Position-only pushes that take away half of the drift, after the poses have moved.
+    /// Position-only pushes that remove half of the drift, after the poses have moved.
     pub fn separate(&mut self, bodies: &Bodies) -> (Twist, Twist) {
         self.place(bodies, &[]);
         match self.joint.kind {

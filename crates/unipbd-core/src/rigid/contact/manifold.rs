@@ -1,8 +1,8 @@
-//! Where two bodies touch: one or two points with a common normal, solved together.
+//! Contact manifold of two bodies: one or two points with a common normal, solved together.
 //!
 //! Impulses are in units of mass times displacement, force times dt^2 [kg m]. Solving the points of a
 //! pair at once, and splitting masses among pairs and not points, makes a sweep exact for a box on a
-//! floor and halves the split inside a stack. What every sweep reads is in [`Contact`], what is read
+//! floor and halves the split inside a stack. Data read in every sweep is in [`Contact`], data read
 //! once or seldom in [`ContactCache`]: sweeps over large heaps are bound by memory.
 
 use super::Depenetration;
@@ -13,16 +13,16 @@ use super::push::Push;
 use crate::math::Vector64;
 use crate::rigid::{InverseMass, Twist};
 
-/// What stays the same within a substep.
+/// Constants of a contact within a substep.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 struct EffectiveMass {
-    /// InverseMass of the split masses along the normal [1/kg].
+    /// Inverse effective mass along the normal, with the split masses [1/kg].
     normal: Coupling,
     /// Tangential response of each point to itself [1/kg].
     tangent: [f64; 2],
     /// Responses of both bodies to moments [1/(kg m^2)].
     turning: (f64, f64),
-    /// Coulomb coefficient: the static one for what hardly slides, else the kinetic one.
+    /// Coulomb coefficient: static if the sliding speed is low, else kinetic.
     friction: f64,
 }
 
@@ -37,24 +37,24 @@ pub(crate) struct Contact {
     pub normal: Vector64,
     points: [Point; 2],
     effective_mass: EffectiveMass,
-    /// Rolling friction times the radius that rolls [m].
+    /// Rolling friction times the rolling radius [m].
     rolling_arm: f64,
-    /// StepContext against rolling [kg m^2].
+    /// Impulse of the rolling resistance [kg m^2].
     pub rolling_impulse: f64,
 }
 
-/// The body's entry, or nothing for a wall.
+/// The entry of a body, or the default for a wall.
 pub(crate) fn entry<T: Copy + Default>(column: &[T], body: u32) -> T {
     column.get(body as usize).copied().unwrap_or_default()
 }
 
-/// What the normal impulses of an iteration come to.
+/// Result of the normal impulses of an iteration.
 pub(crate) struct Pressed {
     /// Displacements of the two bodies before it.
     a: Twist,
     b: Twist,
     pub normal: [f64; 2],
-    /// How far they turn the two bodies against each other, with the split masses.
+    /// Rotation of the two bodies against each other by these impulses, with the split masses.
     turned: (f64, f64),
 }
 
@@ -70,12 +70,12 @@ impl Contact {
         Contact { a, b, count: 0, normal, points, effective_mass, rolling_arm, rolling_impulse: 0.0 }
     }
 
-    /// Whether one more point with this normal can be added.
+    /// Whether a point with this normal can be added.
     pub fn has_room(&self, normal: Vector64) -> bool {
         self.count < 2 && self.is_along(normal)
     }
 
-    /// Whether a point with this normal can be one of the contact.
+    /// Whether a point with this normal fits the contact.
     pub fn is_along(&self, normal: Vector64) -> bool {
         self.normal.dot(normal) > 0.9999
     }
@@ -100,7 +100,7 @@ impl Contact {
         &self.points[..self.count as usize]
     }
 
-    /// What its impulses become in substeps of another length.
+    /// Scales the impulses to substeps of another length.
     pub fn scale_impulses(&mut self, factor: f64) {
         self.rolling_impulse *= factor;
         for point in self.points_mut() {
@@ -118,7 +118,7 @@ impl Contact {
         self.normal * point.tangent_a - self.tangent() * point.normal_a
     }
 
-    /// Whether it carries any load.
+    /// Whether it carries a load.
     pub fn is_pressed(&self) -> bool {
         self.points().iter().any(|point| point.normal_impulse > 0.0)
     }
@@ -134,7 +134,7 @@ impl Contact {
         self.points().iter().map(left).fold(f64::INFINITY, f64::min)
     }
 
-    /// Notes the velocities at the start of a substep. What slides slower than `slow` [m/s] sticks.
+    /// Stores the velocities at the start of a substep. A contact that slides slower than `slow` [m/s] sticks.
     pub fn note_velocities(&mut self, cache: &mut ContactCache, velocities: &[Twist], slow: f64) {
         let (a, b) = (entry(velocities, self.a), entry(velocities, self.b));
         let mut sliding = 0.0f64;
@@ -146,7 +146,7 @@ impl Contact {
         self.effective_mass.friction = if sliding < slow { surface.static_friction } else { surface.kinetic_friction };
     }
 
-    /// Prepares the equations; `split` are the inverse_masses times the share of contacts in each body.
+    /// Prepares the equations; `split` are the inverse masses times the splitting factor of each body.
     pub fn prepare(&mut self, split: &[InverseMass]) {
         let (a, b) = (entry(split, self.a), entry(split, self.b));
         let linear = a.linear + b.linear;
@@ -203,7 +203,7 @@ impl Contact {
         push
     }
 
-    /// The normal impulses that leave no approach beyond the gap, in place of the `old` ones; none where
+    /// The normal impulses that leave no approach beyond the gap, in place of the `old` ones; `None` if
     /// there were none and none are needed.
     pub fn press(&self, displacements: &[Twist], old: [f64; 2]) -> Option<Pressed> {
         let (a, b) = (entry(displacements, self.a), entry(displacements, self.b));
@@ -222,19 +222,19 @@ impl Contact {
         Some(Pressed { a, b, normal, turned: (turned_a, turned_b) })
     }
 
-    /// The tangential impulse that ends the sliding at a point, after the normal ones have acted.
+    /// The tangential impulse that stops the sliding at a point, after the normal impulses.
     pub fn stop(&self, k: usize, pressed: &Pressed) -> f64 {
         let (point, total) = (&self.points[k], pressed.total());
         if total <= 0.0 {
             return 0.0;
         }
         let turned = point.tangent_a * pressed.turned.0 + point.tangent_b * pressed.turned.1;
-        // Points of one line slide alike: each answers for its share of the load.
+        // Both points have the same tangential motion: each takes the share of its normal load.
         let share = pressed.normal[k] / total;
         (self.slide(point, &pressed.a, &pressed.b) + turned) * share / self.effective_mass.tangent[k]
     }
 
-    /// Rolling resistance, after the other impulses of the contact have turned the bodies.
+    /// Rolling resistance, after the other impulses of the contact have rotated the bodies.
     pub fn resist_rolling(&mut self, pressed: &Pressed, push: &mut Push) {
         if self.rolling_arm == 0.0 {
             return;
@@ -252,12 +252,12 @@ impl Contact {
         self.points[k].normal_impulse > 0.0 && cache.approach[k] < -slowest
     }
 
-    /// Whether the contact rebounds: it was hit faster than `slowest` [m/s].
+    /// Whether the contact rebounds: its impact speed exceeded `slowest` [m/s].
     pub fn rebounds(&self, cache: &ContactCache, slowest: f64) -> bool {
         cache.surface.restitution > 0.0 && (0..2).any(|k| self.point_rebounds(k, cache, slowest))
     }
 
-    /// One velocity iteration towards v_n = -e v_before; the whole impulse of the substep stays repulsive.
+    /// One velocity iteration towards v_n = -e v_before; the total impulse of the substep stays repulsive.
     pub fn rebound(&self, cache: &mut ContactCache, velocities: &[Twist], dt: f64, slowest: f64) -> Push {
         let (a, b) = (entry(velocities, self.a), entry(velocities, self.b));
         let acts = [0, 1].map(|k| self.point_rebounds(k, cache, slowest));
@@ -276,7 +276,7 @@ impl Contact {
         push
     }
 
-    /// The push that takes overlap out of the positions; `size` is that of the smaller body [m].
+    /// The push that removes overlap from the positions; `size` is the size of the smaller body [m].
     pub fn separate(&self, displacements: &[Twist], how: &Depenetration, size: f64, dt: f64) -> Push {
         let (a, b) = (entry(displacements, self.a), entry(displacements, self.b));
         let mut overlap = [0.0; 2];

@@ -3,7 +3,7 @@
 //! Contacts are constraints on the displacement u of a substep, warm started with the impulses of the
 //! last one and solved by Jacobi sweeps in which a body's mass is split among its contacts (Tonge et al.
 //! 2012, "Mass splitting for jitter-free parallel rigid body simulation"). Overlap never becomes
-//! velocity: a separate pass takes it out of the positions. A substep calls, in this order:
+//! velocity: a separate pass removes it from the positions. A substep calls, in this order:
 //!
 //! 1. [`Contacts::begin_substep`] finds the contacts,
 //! 2. [`Bodies::predict`] and [`Contacts::warm_start`],
@@ -64,7 +64,7 @@ pub struct Contacts {
     islands: Islands,
     jacobi: Jacobi,
     split: Vec<InverseMass>,
-    /// Inverse masses as contacts see them; empty where they are those of the bodies.
+    /// Inverse masses for contacts; empty if they equal those of the bodies.
     scaled: Vec<InverseMass>,
     counts: Vec<u32>,
     corrections: Vec<Twist>,
@@ -76,14 +76,14 @@ pub struct Contacts {
     up: Vector64,
 }
 
-/// What can be read about a contact.
+/// Readable data of a contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct ContactPoint {
     /// First body.
     pub body: u32,
-    /// Second body, unless a wall is touched.
+    /// Second body; `None` for a contact with a wall.
     pub other: Option<u32>,
-    /// The wall touched, if one is.
+    /// The wall; `None` for a contact of two bodies.
     pub wall: Option<u32>,
     /// Unit normal, towards the first body.
     pub normal: Vector64,
@@ -96,7 +96,7 @@ pub struct ContactPoint {
 }
 
 impl Contacts {
-    /// No contacts yet, between bodies and these walls.
+    /// An empty set of contacts between bodies and these walls.
     pub fn new(walls: &[Wall], settings: ContactSettings) -> Contacts {
         Contacts {
             settings,
@@ -118,12 +118,12 @@ impl Contacts {
         }
     }
 
-    /// The same, solved in another way.
+    /// The same, with another contact solver.
     pub(crate) fn solved_by(self, solver: Arc<dyn ContactSolver>) -> Contacts {
         Contacts { solver, ..self }
     }
 
-    /// Takes over the solver of others: a saved state does not hold it.
+    /// Takes the contact solver of another instance: a saved state does not contain it.
     pub(crate) fn solve_like(&mut self, other: &Contacts) {
         self.solver = other.solver.clone();
     }
@@ -137,15 +137,15 @@ impl Contacts {
         self.joints.len() - 1
     }
 
-    /// Changes what a joint keeps, such as the speed of its motor.
+    /// Changes the constraint of a joint, such as the speed of its motor.
     pub fn set_joint(&mut self, index: usize, kind: JointKind, bodies: &mut Bodies) {
         self.joints[index].joint.kind = kind;
         bodies.pushed[self.joints[index].joint.body as usize] = true;
     }
 
-    /// Finds the contacts at the start of a substep and wakes what is touched.
+    /// Finds the contacts at the start of a substep and wakes the bodies that are touched.
     pub fn begin_substep(&mut self, bodies: &mut Bodies, dt: f64, gravity: Vector64) {
-        // Impulses are forces times dt^2: the same force in a longer substep is more of them.
+        // Impulses are forces times dt^2: the same force has a larger impulse in a longer substep.
         self.warm_factor = if self.dt > 0.0 { (dt / self.dt) * (dt / self.dt) } else { 1.0 };
         self.dt = dt;
         self.gravity = gravity.length();
@@ -163,7 +163,7 @@ impl Contacts {
         self.narrow_phase.adopt();
     }
 
-    /// Shares each body among its contacts and applies the impulses kept from the last substep.
+    /// Splits the mass of each body among its contacts and applies the impulses kept from the last substep.
     pub fn warm_start(&mut self, bodies: &mut Bodies) {
         self.split_masses(bodies);
         self.jacobi.index(self.narrow_phase.contacts(), bodies.len());
@@ -211,7 +211,7 @@ impl Contacts {
         ));
     }
 
-    /// Jacobi iterations of all contacts and joints on the displacements, one unless the settings say more.
+    /// Jacobi iterations of all contacts and joints on the displacements; one iteration by default.
     pub fn iterate(&mut self, bodies: &mut Bodies) {
         for _ in 0..self.settings.iterations {
             self.sweep(bodies);
@@ -235,7 +235,7 @@ impl Contacts {
         }
     }
 
-    /// Lets contacts rebound that were hit faster than gravity alone would in two substeps.
+    /// Applies restitution to contacts with an impact speed above that of gravity in two substeps.
     pub fn restitute(&mut self, bodies: &mut Bodies) {
         let (dt, slowest) = (self.dt, 2.0 * self.gravity * self.dt);
         let mut rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches());
@@ -270,7 +270,7 @@ impl Contacts {
         }
     }
 
-    /// Takes overlap out of the positions, without changing any velocity.
+    /// Removes overlap from the positions, without changing any velocity.
     pub fn depenetrate(&mut self, bodies: &mut Bodies) {
         let (how, dt) = (&self.settings.depenetration, self.dt);
         let (displacements, sizes) = (&bodies.displacements, &bodies.sizes);
@@ -370,7 +370,7 @@ fn add_pair(sums: &mut [Twist], (a, b): (u32, u32), (on_a, on_b): (Twist, Twist)
     }
 }
 
-/// The inverse_masses that contacts see: the scaled ones, where there are any.
+/// The inverse masses for contacts: the scaled ones, if there are any.
 fn seen<'a>(scaled: &'a [InverseMass], own: &'a [InverseMass]) -> &'a [InverseMass] {
     if scaled.is_empty() { own } else { scaled }
 }

@@ -1,7 +1,7 @@
-//! Finds the contacts of each substep and hands on the impulses of the last one.
+//! Finds the contacts of each substep and transfers the impulses of the last substep.
 //!
-//! What touches (which vertex over which face) is sought anew only where the pieces of a pair have moved: until
-//! then the same features are measured again, which is exact. Discs are always measured.
+//! Contact features (vertex and face) are searched again only if the pieces of a pair have moved. Before that
+//! the same features are measured again, which is exact. Discs are always measured.
 
 use super::contact_cache::ContactCache;
 use super::contact_set::{ContactSet, Rows, StepContext};
@@ -13,7 +13,7 @@ use crate::rigid::Bodies;
 use crate::rigid::Wall;
 use rayon::prelude::*;
 
-/// Pairs per task, and how many pairs make tasks worth their while.
+/// Pairs per task, and the minimum number of pairs for parallel tasks.
 const CHUNK: usize = 512;
 const PARALLEL_FROM: usize = 2048;
 
@@ -23,11 +23,11 @@ pub(super) struct NarrowPhase {
     pieces: Pieces,
     pairs: Pairs,
     found: ContactSet,
-    /// What the coming substep finds.
+    /// Contacts found for the next substep.
     coming: ContactSet,
-    /// Contacts between sleeping bodies, kept until they wake: with forces in place of impulses.
+    /// Contacts between sleeping bodies, kept until they wake: they store forces in place of impulses.
     frozen: ContactSet,
-    /// What each task of the narrow phase found.
+    /// Contacts found by each task of the narrow phase.
     #[serde(skip)]
     tasks: Vec<ContactSet>,
 }
@@ -49,12 +49,12 @@ impl NarrowPhase {
         (&mut self.found.contacts, &mut self.found.caches)
     }
 
-    /// Two bodies that no longer collide with each other.
+    /// Disables collisions between two bodies.
     pub fn exclude(&mut self, a: u32, b: u32) {
         self.pairs.exclude(a, b);
     }
 
-    /// Finds all contacts that can act in a substep, with the impulses of the last one. They are
+    /// Finds all contacts that can act in a substep, with the impulses of the last substep. They are
     /// [`NarrowPhase::candidates`] until they are adopted.
     pub fn find(&mut self, bodies: &Bodies, moment: &StepContext) {
         let added = self.pieces.append_bodies(bodies);
@@ -64,12 +64,12 @@ impl NarrowPhase {
         self.collide(bodies, moment);
     }
 
-    /// What was found.
+    /// The contacts found by the search.
     pub fn candidates(&self) -> &[Contact] {
         &self.coming.contacts
     }
 
-    /// Ends the search: what was found are the contacts.
+    /// Ends the search: the contacts found replace the current ones.
     pub fn adopt(&mut self) {
         std::mem::swap(&mut self.found, &mut self.coming);
         for (pair, sought) in self.found.renewed.drain(..) {
@@ -87,7 +87,7 @@ impl NarrowPhase {
         }
     }
 
-    /// Keeps the contacts of sleeping pairs aside, with forces in place of impulses.
+    /// Stores the contacts of sleeping pairs, with forces in place of impulses.
     pub fn freeze(&mut self, bodies: &Bodies, dt: f64) {
         let mut frozen = ContactSet::default();
         for (pair, span) in self.pairs.all.iter().zip(&mut self.pairs.spans) {

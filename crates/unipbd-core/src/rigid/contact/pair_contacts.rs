@@ -1,4 +1,4 @@
-//! What touches in one pair: measured again where it is known, else sought by the narrow phase.
+//! Contacts of one pair: measured again if the features are known, else searched by the narrow phase.
 
 use super::collide::{self, FeaturePair, Proximity, Touch};
 use super::contact_cache::ContactCache;
@@ -9,7 +9,7 @@ use super::pieces::Pieces;
 use crate::math::Vector64;
 use crate::rigid::Bodies;
 
-/// What the search in a pair sees.
+/// Input of the contact search of a pair.
 pub(super) struct PairContacts<'a> {
     pub pieces: &'a Pieces,
     pub pairs: &'a Pairs,
@@ -17,7 +17,7 @@ pub(super) struct PairContacts<'a> {
     pub moment: &'a StepContext,
     /// Contacts of the last substep.
     pub last: &'a ContactSet,
-    /// Contacts that slept.
+    /// Contacts of sleeping bodies.
     pub frozen: &'a ContactSet,
 }
 
@@ -48,7 +48,7 @@ impl PairContacts<'_> {
         self.hand_on(self.pairs.spans[index as usize], start, out);
     }
 
-    /// Measures what touched in the last substep. Tells whether that is still one contact where it was.
+    /// Measures the features of the last substep. Returns whether they still form one valid contact.
     fn measure(&self, index: u32, pair: &Pair, out: &mut ContactSet) -> bool {
         let span = self.pairs.spans[index as usize];
         if span.count == 0 {
@@ -90,7 +90,7 @@ impl PairContacts<'_> {
         true
     }
 
-    /// Seeks what touches, with gaps below `margin`.
+    /// Searches for contacts with gaps below `margin`.
     fn seek(&self, index: u32, pair: &Pair, margin: f64, out: &mut ContactSet) {
         let mut touches = std::mem::take(&mut out.touches);
         touches.clear();
@@ -145,7 +145,7 @@ impl PairContacts<'_> {
         contact.add(touch, self.centers(pair));
     }
 
-    /// Gives the contacts from `start` on the impulses that their pair had, and notes velocities.
+    /// Initialises the contacts from `start` on with the impulses of their pair, and stores velocities.
     fn hand_on(&self, span: Span, start: usize, out: &mut ContactSet) {
         let known = if span.frozen { self.frozen } else { self.last };
         let scale = if span.frozen { self.moment.dt * self.moment.dt } else { self.moment.kept };
@@ -160,8 +160,8 @@ impl PairContacts<'_> {
     }
 }
 
-/// Gives a contact the impulses of the same points in the last substep: the same vertex, or else the
-/// same place. Where something rebounded they are no guess of what comes.
+/// Copies the impulses of the same points in the last substep to a contact: the same vertex, or else the
+/// same position. After a rebound the old impulses are not used as an initial guess.
 fn keep((contact, cache): (&mut Contact, &ContactCache), known: (&[Contact], &[ContactCache]), near: f64, scale: f64) {
     let old = || {
         let rows = known.0.iter().zip(known.1);

@@ -1,4 +1,4 @@
-//! The pairs of pieces that may touch, sought anew only when a piece can have left the box it was sought with.
+//! Pairs of pieces that may touch. The search is repeated only when a piece may have left its enlarged box.
 
 use super::broad;
 use super::manifold::entry;
@@ -6,15 +6,15 @@ use super::pieces::{Bounds, NONE, Pieces};
 use crate::math::Vector64;
 use crate::rigid::{Bodies, Surface, Twist};
 
-/// Room in the boxes that pairs are sought with, over the reach of a substep.
+/// Margin of the enlarged boxes, relative to the reach of a substep.
 const ROOM: f64 = 4.0;
 
 /// Two pieces, or a piece and a half-plane, that may touch.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Pair {
-    /// Both by increasing index, which pairs are sorted by.
+    /// Indices of both in increasing order; pairs are sorted by them.
     key: (u32, u32),
-    /// The piece whose body is the first of a contact, and the other.
+    /// The piece of the first body of a contact, and the other piece.
     pub pieces: (u32, u32),
     /// Their bodies; the second is `NONE` for a wall.
     pub bodies: (u32, u32),
@@ -22,13 +22,13 @@ pub(super) struct Pair {
     pub kind: Kind,
     pub surface: Surface,
     pub rolling_arm: f64,
-    /// Gap below which contacts are kept beside what speed demands [m].
+    /// Gap below which contacts are kept, in addition to the gap required by speed [m].
     pub near: f64,
-    /// How far the pieces may move before what touches is sought anew [m].
+    /// Motion of the pieces after which contact features are searched again [m].
     pub slack: f64,
 }
 
-/// What meets.
+/// The types of two colliding pieces.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(super) enum Kind {
     /// Two discs.
@@ -41,7 +41,7 @@ pub(super) enum Kind {
     Pieces,
 }
 
-/// The contacts of a pair in the last substep, or those it fell asleep with.
+/// The contacts of a pair in the last substep, or at the time it fell asleep.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Span {
     pub first: u32,
@@ -55,7 +55,7 @@ impl Span {
     }
 }
 
-/// Where the bodies of a pair are to each other.
+/// Relative position of the bodies of a pair.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Relation {
     /// From the centre of mass of the second body to that of the first [m].
@@ -63,13 +63,13 @@ pub(super) struct Relation {
     angles: [f64; 2],
 }
 
-/// Where the bodies were when what touches was sought, and with what.
+/// Pose of the bodies at the last search for contact features, and its parameters.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct SearchRecord {
     pub at: Relation,
     /// Gap below which contacts were found [m].
     pub margin: f64,
-    /// How far they may move against each other until it is no longer known what touches [m].
+    /// Relative motion of the bodies after which the contact features are no longer valid [m].
     pub room: f64,
 }
 
@@ -79,7 +79,7 @@ impl Relation {
         Relation { offset: a.position - b.position, angles: [a.angle, b.angle] }
     }
 
-    /// How far any two points of the bodies have moved against each other since, at most [m].
+    /// Upper bound of the relative motion of any two points of the bodies since then [m].
     pub fn way(&self, since: &Relation, (a, b): (u32, u32), bodies: &Bodies) -> f64 {
         let turned = |k: usize, body: u32| (self.angles[k] - since.angles[k]).abs() * entry(&bodies.reaches, body);
         (self.offset - since.offset).length() + turned(0, a) + turned(1, b)
@@ -94,26 +94,26 @@ impl SearchRecord {
     };
 }
 
-/// All pairs that may touch, and how far bodies can move.
+/// All pairs that may touch, and bounds on the motion of bodies.
 #[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Pairs {
     excluded: Vec<(u32, u32)>,
-    /// Boxes within which pieces may move before pairs are sought anew.
+    /// Enlarged boxes: pieces may move within them before pairs are searched again.
     fat: Vec<Bounds>,
     pub all: Vec<Pair>,
     pub spans: Vec<Span>,
     pub sought: Vec<SearchRecord>,
-    /// Pairs of which a body can move.
+    /// Pairs with at least one movable body.
     pub active: Vec<Active>,
-    /// Which bodies could move when `active` was listed.
+    /// Flags of the bodies that were movable when `active` was listed.
     was_active: Vec<bool>,
-    /// How fast each body goes, and how fast its fastest point turns about its centre [m/s].
+    /// Linear speed of each body, and the speed of its fastest point by rotation about its centre [m/s].
     speeds: Vec<Twist>,
-    /// Twice the way that a body and one near it can go against each other in the substep, the most of all near [m].
+    /// Twice the relative motion of a body and a nearby body in the substep, the maximum over all nearby bodies [m].
     closing: Vec<f64>,
 }
 
-/// A pair of which a body can move.
+/// A pair with at least one movable body.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Active {
     pub index: u32,
@@ -121,14 +121,14 @@ pub(super) struct Active {
 }
 
 impl Pairs {
-    /// Two bodies that no longer collide with each other.
+    /// Disables collisions between two bodies.
     pub fn exclude(&mut self, a: u32, b: u32) {
         self.excluded.push((a.min(b), a.max(b)));
         self.excluded.sort_unstable();
         self.fat.clear();
     }
 
-    /// Half-planes come after all pieces: their indices grow with the number of those.
+    /// Half-planes follow all pieces: their indices increase with the number of pieces.
     pub fn renumber(&mut self, pieces: &Pieces, added: usize) {
         let first = (pieces.all.len() - added) as u32;
         for pair in self.all.iter_mut().filter(|pair| added > 0 && pair.key.1 >= first) {
@@ -137,7 +137,7 @@ impl Pairs {
         }
     }
 
-    /// Makes the list hold all pairs that can touch in a substep of length `dt`.
+    /// Updates the list to contain all pairs that can touch in a substep of length `dt`.
     pub fn update(&mut self, pieces: &Pieces, bodies: &Bodies, dt: f64, gravity: f64) {
         self.measure_speeds(bodies, gravity * dt);
         spread(&self.speeds, dt, self.active.iter().map(|active| active.bodies), &mut self.closing);
@@ -151,13 +151,13 @@ impl Pairs {
         spread(&self.speeds, dt, self.active.iter().map(|active| active.bodies), &mut self.closing);
     }
 
-    /// How far apart a pair may be and still touch in the substep [m].
+    /// Largest distance of a pair that can touch in the substep [m].
     pub fn margin(&self, pair: &Pair) -> f64 {
         let (a, b) = pair.bodies;
         entry(&self.closing, a).max(entry(&self.closing, b)) + pair.near
     }
 
-    /// Gravity adds this much in the substep [m/s].
+    /// Velocity change by gravity in the substep [m/s].
     fn measure_speeds(&mut self, bodies: &Bodies, gain: f64) {
         self.speeds.clear();
         self.speeds.extend(bodies.velocities.iter().zip(&bodies.reaches).map(|(velocity, reach)| Twist {
@@ -166,13 +166,13 @@ impl Pairs {
         }));
     }
 
-    /// Twice the distance a body can go in the substep: on its own, or hit by one near it [m].
+    /// Twice the maximum motion of a body in the substep: its own motion, or after a hit by a nearby body [m].
     fn reach(&self, body: u32, dt: f64) -> f64 {
         let own = entry(&self.speeds, body);
         (2.0 * (own.linear.length() + own.angular) * dt).max(entry(&self.closing, body))
     }
 
-    /// Whether no piece can leave the box that pairs were sought with.
+    /// Whether every piece stays in its enlarged box.
     fn hold(&self, pieces: &Pieces, bodies: &Bodies, dt: f64) -> bool {
         let moved = pieces.all.iter().zip(&pieces.bounds);
         self.fat.len() == pieces.all.len()
@@ -183,10 +183,10 @@ impl Pairs {
             })
     }
 
-    /// Seeks the pairs anew, with room for several substeps.
+    /// Searches the pairs again, with a margin for several substeps.
     fn pair_up(&mut self, pieces: &Pieces, bodies: &Bodies, dt: f64) {
         let mut found = self.seek(pieces, bodies, dt);
-        // Bodies near a fast one move as far as it does, once hit: give them the same room.
+        // A body near a fast body can be as fast after a collision: both get the same margin.
         let before: Vec<f64> = (0..bodies.len() as u32).map(|body| self.reach(body, dt)).collect();
         let of_bodies = found.iter().map(|&(a, b)| (pieces.body_of(a), pieces.body_of(b)));
         spread(&self.speeds, dt, of_bodies, &mut self.closing);
@@ -199,7 +199,7 @@ impl Pairs {
         self.list_active(bodies);
     }
 
-    /// Takes over these pairs; those that were known keep what is known of them.
+    /// Replaces the list of pairs; pairs that are in the old list keep their data.
     fn replace(&mut self, pieces: &Pieces, found: &[(u32, u32)]) {
         let (spans, sought) = (std::mem::take(&mut self.spans), std::mem::take(&mut self.sought));
         let mut old = std::mem::take(&mut self.all).into_iter().zip(spans.into_iter().zip(sought)).peekable();
@@ -274,8 +274,8 @@ impl Pair {
     }
 }
 
-/// Fills `closing`: bodies that move together hardly meet, and one that is hit by a third moves on no faster
-/// than that came.
+/// Fills `closing` from relative speeds: bodies with a common motion hardly collide, and a body that is hit by a
+/// third body does not exceed the speed of the third body.
 fn spread(speeds: &[Twist], dt: f64, pairs: impl Iterator<Item = (u32, u32)>, closing: &mut Vec<f64>) {
     closing.clear();
     closing.resize(speeds.len(), 0.0);

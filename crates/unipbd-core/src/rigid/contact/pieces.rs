@@ -5,7 +5,7 @@ use crate::rigid::{Bodies, CollisionFilter, Pose, Surface};
 use crate::rigid::{Boundary, Wall};
 use crate::shapes::{Core, Shape};
 
-/// In place of an index: there is none.
+/// Index value for "none".
 pub(super) const NONE: u32 = u32::MAX;
 
 /// An axis-aligned box.
@@ -29,7 +29,7 @@ impl Bounds {
             && other.low.y <= self.high.y
     }
 
-    /// How far apart two boxes are along the axis that parts them most; negative where they overlap [m].
+    /// Separation of two boxes along the axis of largest separation; negative if they overlap [m].
     pub fn distance(&self, other: &Bounds) -> f64 {
         (self.low - other.high).max(other.low - self.high).max_element()
     }
@@ -42,7 +42,7 @@ impl Bounds {
     }
 }
 
-/// What a piece belongs to, and where its vertices lie.
+/// The owner of a piece, and the range of its vertices.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Piece {
     /// Its body, or [`NONE`].
@@ -59,7 +59,7 @@ pub(super) struct Piece {
     pub filter: CollisionFilter,
 }
 
-/// A wall without end.
+/// An infinite half-plane wall.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct HalfPlane {
     pub wall: u32,
@@ -68,7 +68,7 @@ pub(super) struct HalfPlane {
     pub surface: Surface,
 }
 
-/// One piece as the narrow phase sees it.
+/// View of one piece in the narrow phase.
 #[derive(Clone, Copy)]
 pub(super) struct PieceView<'a> {
     pub vertices: &'a [Vector64],
@@ -84,7 +84,7 @@ impl PieceView<'_> {
         self.vertices.len() == 1
     }
 
-    /// Whether it is the whole of a convex solid, no cut side.
+    /// Whether it is the whole of a convex solid, without cut sides.
     pub fn is_whole(&self) -> bool {
         self.outer.iter().all(|&outer| outer)
     }
@@ -133,7 +133,7 @@ impl Pieces {
         pieces
     }
 
-    /// Appends the pieces of bodies that were added since the last call; tells how many there were.
+    /// Appends the pieces of bodies that were added since the last call; returns their number.
     pub fn append_bodies(&mut self, bodies: &Bodies) -> usize {
         let (known, pieces) = (self.known_bodies, self.all.len());
         for id in known..bodies.len() {
@@ -168,7 +168,7 @@ impl Pieces {
         }
     }
 
-    /// Places the pieces whose bounds are not known yet.
+    /// Transforms the pieces whose bounds are not set yet.
     fn place_last(&mut self, pose: &Pose) {
         for index in self.bounds.len()..self.all.len() {
             self.bounds.push(Bounds::EMPTY);
@@ -176,7 +176,7 @@ impl Pieces {
         }
     }
 
-    /// Moves the pieces of bodies that can have moved.
+    /// Updates the pieces of bodies that may have moved.
     pub fn update(&mut self, bodies: &Bodies) {
         let (mut turned, mut rotation) = (NONE, Vector64::X);
         for index in 0..self.all.len() {

@@ -1,21 +1,21 @@
-//! How contacts are solved: what a scene may choose.
+//! Settings of the contact solver.
 
 use super::SleepSettings;
 use crate::scene::ContactDescription;
 
-/// How contacts are solved.
+/// Settings of the contact solver.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ContactSettings {
-    /// Contacts that share a body count this much less: over-relaxation of the split Jacobi sweep, below 2.
+    /// Factor that reduces the mass splitting: over-relaxation of the split Jacobi sweep, below 2.
     /// With an odd number of iterations in a substep warm starting is stable only up to 4/3 (one) or 1.69 (three).
     pub relaxation: f64,
-    /// Iterations in a call of [`Contacts::iterate`](super::Contacts::iterate), two of which make a substep.
+    /// Iterations in a call of [`Contacts::iterate`](super::Contacts::iterate). A substep has two calls.
     pub iterations: u32,
-    /// How overlap is taken out.
+    /// Settings of the overlap removal.
     pub depenetration: Depenetration,
     /// Velocity iterations of the restitution pass.
     pub restitution_iterations: u32,
-    /// When bodies fall asleep; none, never.
+    /// Sleep thresholds of bodies; `None` disables sleep.
     pub sleep: Option<SleepSettings>,
 }
 
@@ -32,19 +32,19 @@ impl Default for ContactSettings {
     }
 }
 
-/// How overlap is taken out of positions. Gently where it is small: lifting at once what an impact has
-/// pressed in feeds rocking stacks with energy. Swiftly where bodies started inside each other.
+/// Settings of the overlap removal. Small overlap is removed slowly: immediate removal of the overlap of an impact
+/// adds energy to rocking stacks. Large overlap of bodies that started inside each other is removed fast.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Depenetration {
-    /// Overlap that is left alone, over the size of the smaller body.
+    /// Overlap that is not removed, relative to the size of the smaller body.
     pub slop: f64,
-    /// Fraction of the overlap that a substep takes out.
+    /// Fraction of the overlap removed in a substep.
     pub fraction: f64,
-    /// Overlap from which on more is taken out, over the size of the smaller body.
+    /// Overlap above which the second fraction applies, relative to the size of the smaller body.
     pub deep: f64,
-    /// Fraction of what lies deeper that a substep takes out.
+    /// Fraction of the deeper overlap removed in a substep.
     pub deep_fraction: f64,
-    /// Fastest that overlap is taken out [m/s].
+    /// Maximum speed of the overlap removal [m/s].
     pub speed: f64,
 }
 

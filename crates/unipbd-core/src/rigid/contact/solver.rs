@@ -1,4 +1,4 @@
-//! How the pushes of contacts are found: the part of the contact solver that can be exchanged.
+//! Interface of the contact solver: the exchangeable computation of contact pushes.
 
 use super::contact_set::Rows;
 use super::jacobi::Jacobi;
@@ -6,22 +6,22 @@ use super::manifold::Contact;
 use crate::math::Vector64;
 use crate::rigid::{Bodies, InverseMass, Twist};
 
-/// A way to find the pushes of contacts. Search, splitting of masses, joints, rebound and depenetration are common to
-/// all ways.
+/// A method to compute the pushes of contacts. Search, splitting of masses, joints, rebound and depenetration are
+/// common to all methods.
 pub(crate) trait ContactSolver: Send + Sync {
-    /// Part of the impulses of the last substep that the next one starts with, 0 to 1.
+    /// Fraction of the impulses of the last substep for warm starting, 0 to 1.
     fn kept(&self) -> f64;
 
     /// One iteration of all contacts on the displacements of the substep; the sums stay in `jacobi`.
     fn sweep(&self, jacobi: &mut Jacobi, rows: Rows<'_>, displacements: &[Twist]);
 
-    /// Writes the inverse masses that contacts see, if they are not those of the bodies.
+    /// Writes the inverse masses for contacts, if they differ from those of the bodies.
     fn scale_masses(&self, contacts: &[Contact], bodies: &Bodies, up: Vector64, out: &mut Vec<InverseMass>) {
         let _ = (contacts, bodies, up, out);
     }
 }
 
-/// Split Jacobi (Tonge et al. 2012): impulses last from substep to substep, friction holds without creep.
+/// Split Jacobi (Tonge et al. 2012): impulses persist between substeps, friction holds without creep.
 pub(crate) struct Split;
 
 impl ContactSolver for Split {

@@ -1,4 +1,4 @@
-//! Bodies that hang together, as trees (union-find).
+//! Sets of connected bodies, as trees (union-find).
 
 /// Sets of bodies, each named by its lowest member.
 #[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
@@ -7,13 +7,13 @@ pub(crate) struct UnionFind {
 }
 
 impl UnionFind {
-    /// Each of so many bodies by itself.
+    /// As many sets as bodies, with one body each.
     pub fn reset(&mut self, bodies: usize) {
         self.parents.clear();
         self.parents.extend(0..bodies as u32);
     }
 
-    /// The name of the set that a body is in.
+    /// The name of the set of a body.
     pub fn root(&mut self, mut id: u32) -> u32 {
         while self.parents[id as usize] != id {
             let above = self.parents[self.parents[id as usize] as usize];
@@ -23,7 +23,7 @@ impl UnionFind {
         id
     }
 
-    /// Makes one set of those of two bodies.
+    /// Merges the sets of two bodies.
     pub fn unite(&mut self, a: u32, b: u32) {
         let (a, b) = (self.root(a), self.root(b));
         self.parents[a.max(b) as usize] = a.min(b);

@@ -1,24 +1,24 @@
-//! How many substeps a frame takes, and why.
+//! The number of substeps of a frame, and the reason for it.
 
 use crate::observe::SubstepReason;
 use crate::scene::{Scene, SubstepLaw, Substeps};
 
 /// Height of a stack of bodies that one substep per frame can carry.
 const BODIES_PER_SUBSTEP: f64 = 2.5;
-/// The number of substeps stays while at least this part of it is wanted, and falls no faster: each
-/// change of it changes the compression that carries a liquid, and rings through it.
+/// The number of substeps is kept while at least this fraction of it is demanded, and falls no faster: each
+/// change of it changes the compression that carries a liquid, and excites oscillations.
 const KEPT: f64 = 0.75;
-/// Growth per frame of a stiffness that was held back.
+/// Growth per frame of a reduced stiffness.
 const STIFFENING: f64 = 1.02;
 
-/// What the choice follows from: a function of the state at the start of a frame alone.
+/// Input of the controller: a function of the state at the start of a frame alone.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Demand {
     /// Fastest particle or emitter [m/s].
     pub speed: f64,
     /// Largest pressure over density, from the multipliers or the depth of the liquid [m^2/s^2].
     pub pressure: f64,
-    /// Bodies that may have to carry each other.
+    /// Number of bodies in a stack that may carry each other.
     pub chain: f64,
 }
 
@@ -35,9 +35,9 @@ pub struct SubstepRule {
 pub struct Choice {
     /// Substeps to take.
     pub substeps: u32,
-    /// Substeps that were wanted, where that is more.
+    /// Substeps demanded, if that is more.
     pub wanted: u32,
-    /// What decided.
+    /// The criterion with the largest demand.
     pub reason: SubstepReason,
 }
 
@@ -74,11 +74,12 @@ impl SubstepRule {
         }
     }
 
-    /// The part of its stiffness that a liquid with a surface has in a frame of `substeps`, after one of `last` with the part `before`.
+    /// The fraction of its full stiffness that a liquid with a surface has in a frame of `substeps` substeps. The frame
+    /// before had `last` substeps and the fraction `before`.
     ///
-    /// Stiffness goes with 1/dt^2. Where it jumped with the number of substeps, what a compressed liquid has stored would
-    /// come out with interest, up to 4 % of the energy of a drop that is drawn out; so it stays as it was and grows frame by
-    /// frame. The target compression is kept all the same.
+    /// Stiffness is proportional to 1/dt^2. If it jumped with the number of substeps, a compressed liquid would release
+    /// more than its stored energy, up to 4 % of the energy of a drop that is drawn out; so it keeps its value and
+    /// grows frame by frame. The target compression is still met.
     pub fn stiffness_after(&self, last: u32, before: f64, frame: f64, demand: Demand, substeps: u32) -> f64 {
         let fixed = matches!(self.substeps, Substeps::Fixed(_));
         if fixed || last == 0 || !self.law.stores_energy() {

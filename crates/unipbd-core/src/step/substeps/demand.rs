@@ -1,4 +1,4 @@
-//! What a frame demands of its substeps, and what pressure is believed, from the state alone.
+//! The number of substeps demanded by a frame, and the limit of the pressure, from the state alone.
 
 use super::controller::Demand;
 use super::statistics::FluidStatistics;
@@ -7,17 +7,17 @@ use crate::observe::{Event, Severity};
 use crate::phase::Phase;
 use crate::step::world::World;
 
-/// Pressures up to this many times what depth and speed account for are believed.
+/// Limit of the pressure, relative to the pressure expected from depth and speed.
 const PRESSURE_MARGIN: f64 = 8.0;
 /// The pressure of the multipliers decides the number of substeps only where it is this many times the
 /// expected one: they rise when the number changes, and must not change it in turn. A column that is let go
 /// swings to twice its weight; to answer that with more substeps pumps energy into the swing.
 const UNEXPECTED: f64 = 3.0;
-/// Speed, in spacings per frame, that a compressed liquid may always reach.
+/// Speed limit, in spacings per frame, that is always granted to a compressed liquid.
 const LEAST_SPEED: f64 = 2.0;
 
 impl World {
-    /// Decides the substeps of a frame, the stiffness and the pressure that is believed in it.
+    /// Sets the substeps of a frame, the stiffness and the limit of the pressure.
     pub(in crate::step) fn choose_substeps(&mut self) -> u32 {
         let liquids = self.survey(self.down(), is_liquid);
         let fluids = if self.has_gas() { self.survey(self.down(), Phase::is_fluid) } else { liquids };
@@ -49,13 +49,13 @@ impl World {
         self.events.push(Event { time: self.clock.time, severity: Severity::Warning, message });
     }
 
-    /// What the number of substeps follows from.
+    /// The quantities that determine the number of substeps.
     fn demand(&self, liquids: FluidStatistics) -> Demand {
         let parts = &self.parts;
         let emitted = parts.emitters.as_ref().map_or(0.0, |emitters| emitters.speed_max(self.clock.time));
         let moving = if self.clock.step == 0 { self.fastest() } else { self.clock.speed };
         let chain = parts.rigid.as_ref().map_or(0.0, |rigid| rigid.support_chain(wide(parts.gravity)));
-        // Pressure that the motion of the liquids within themselves can bring about.
+        // Pressure from the relative motion within the liquids.
         let dynamic = self.square_of_relative_speed(liquids, is_liquid);
         let known = if self.clock.step == 0 { 0.0 } else { liquids.pressure(self.clock.dt) };
         let pressure = self.depth_pressure(liquids).max(dynamic).max(known / UNEXPECTED);
@@ -69,7 +69,7 @@ impl World {
         f64::from(square.max(0.0)).sqrt()
     }
 
-    /// Direction of gravity; zero without.
+    /// Direction of gravity; zero without gravity.
     fn down(&self) -> Vector {
         self.parts.gravity.normalize_or_zero()
     }
@@ -78,7 +78,7 @@ impl World {
         self.parts.materials.iter().any(|material| material.phase == Phase::Gas)
     }
 
-    /// Pressure over density at the bottom of what was surveyed, from its extent along gravity [m^2/s^2].
+    /// Pressure over density at the bottom of the surveyed particles, from their extent along gravity [m^2/s^2].
     fn depth_pressure(&self, of: FluidStatistics) -> f64 {
         let (gravity, depth) = (f64::from(self.parts.gravity.length()), of.depth());
         if gravity > 0.0 && depth.is_finite() { gravity * depth * self.density_ratio() } else { 0.0 }
@@ -91,7 +91,7 @@ impl World {
         if extents.iter().all(|extent| extent.is_finite()) { extents } else { [0.0; 2] }
     }
 
-    /// The pressure that a fluid as deep and as fast as this one can reach, with a wide margin [m^2/s^2].
+    /// The maximum pressure over density for this depth and speed of the fluid, with a wide margin [m^2/s^2].
     pub(in crate::step) fn pressure_limit(&self) -> f64 {
         self.pressure_limit_of(self.survey(self.down(), Phase::is_fluid))
     }
@@ -111,7 +111,7 @@ impl World {
         let liquids = materials.filter(|(_, material)| material.phase == Phase::Liquid);
         let (mut light, mut heavy) = (f64::INFINITY, 0.0_f64);
         for (index, liquid) in liquids {
-            // Only one that would change the ratio is looked for.
+            // The search covers only liquids that would change the ratio.
             if (liquid.density < light || liquid.density > heavy) && is_there(index) {
                 (light, heavy) = (light.min(liquid.density), heavy.max(liquid.density));
             }

@@ -1,4 +1,4 @@
-//! One look at the particles of some phases: what the demand of a frame is made of.
+//! Statistics of the particles of some phases: the input of the demand of a frame.
 
 use crate::math::{Real, Vector, Vector64, larger, wide};
 use crate::phase::Phase;
@@ -47,13 +47,13 @@ impl FluidStatistics {
         self.velocity / self.count.max(1.0)
     }
 
-    /// Root of the mean fourth power of the speed [m^2/s^2]: jets count, single drops do not.
+    /// Root of the mean fourth power of the speed [m^2/s^2]: jets contribute, single drops hardly do.
     pub fn square_of_speed(self) -> f64 {
         self.mean(self.fourth).sqrt()
     }
 
     /// Largest pressure over density after a substep of this length [m^2/s^2], if it grows linearly with
-    /// depth: taken from the mean square, so that a few particles squeezed in somewhere do not decide for all.
+    /// depth: computed from the mean square, so that a few locally compressed particles do not dominate.
     pub fn pressure(self, dt: f64) -> f64 {
         (3.0 * self.mean(self.pressure)).sqrt() / (dt * dt)
     }
@@ -65,7 +65,7 @@ impl FluidStatistics {
 }
 
 impl World {
-    /// Looks once at the particles of these phases; `down` is the direction along which their reach is taken.
+    /// Computes the statistics of these phases in one pass; `down` is the direction of their extent.
     pub(in crate::step) fn survey(&self, down: Vector, counted: impl Fn(Phase) -> bool + Sync) -> FluidStatistics {
         let particles = &self.parts.particles;
         let add = |sum: FluidStatistics, row: usize| {
@@ -91,7 +91,7 @@ impl World {
         )
     }
 
-    /// Root of the mean fourth power of the speed relative to the mean one [m^2/s^2], of those surveyed.
+    /// Root of the mean fourth power of the speed relative to the mean velocity [m^2/s^2], of the surveyed particles.
     pub(in crate::step) fn square_of_relative_speed(
         &self,
         of: FluidStatistics,

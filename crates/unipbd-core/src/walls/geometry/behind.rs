@@ -1,4 +1,4 @@
-//! How much of a kernel lies behind walls, and whether any does.
+//! The part of a kernel behind walls, and a fast test for it.
 
 use super::{Rectangle, Walls};
 use crate::math::{Real, Vector, larger, smaller};
@@ -35,8 +35,8 @@ impl Walls {
         (inside, gradient)
     }
 
-    /// The distance of each point to the nearest wall, or less; negative inside. Where most points are
-    /// far from all walls, this tells so at little cost.
+    /// The distance of each point to the nearest wall, or a lower bound; negative inside. It is cheap if most points
+    /// are far from all walls.
     pub fn distances(&self, points: &[Vector], distances: &mut [Real]) {
         distances.fill(Real::INFINITY);
         for plane in &self.planes {
@@ -78,7 +78,7 @@ impl Walls {
         }
     }
 
-    /// Visits what each wall near `x` adds to the gradient of the coverage there [1/m], and the way from
+    /// Visits the contribution of each wall near `x` to the gradient of the coverage there [1/m], and the vector from
     /// that wall to `x` [m].
     pub(crate) fn pushes(&self, x: Vector, coverage: &Coverage, mut visit: impl FnMut(Vector, Vector)) {
         let reach = coverage.radius();
@@ -112,7 +112,7 @@ impl Rectangle {
         if low.cmple(-reach).any() || high.cmple(-reach).any() {
             return (0.0, Vector::ZERO);
         }
-        // Between two sides lies what is behind each, less all; so along both axes at once.
+        // The part between two sides is the sum of the parts behind each side, less the whole; along both axes at once.
         let (mut inside, mut gradient) = (1.0, Vector::ZERO);
         for (a, to_x) in [(low.x, 1.0), (high.x, -1.0)] {
             for (b, to_y) in [(low.y, 1.0), (high.y, -1.0)] {

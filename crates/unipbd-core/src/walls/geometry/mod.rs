@@ -8,7 +8,7 @@ use crate::scene::{HalfPlane, Obstacle, Scene, Side, Slip, Tank};
 mod behind;
 mod rectangle;
 
-/// How deep a point is inside a wall, and the way out.
+/// Penetration of a point in a wall, and the direction out of it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Hit {
     /// Direction out of the wall, of length 1.
@@ -21,7 +21,7 @@ pub struct Hit {
     pub measured: Option<u16>,
 }
 
-/// What a wall without slip does to a viscous fluid at a point.
+/// Effect of a no-slip wall on a viscous fluid at a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Shear {
     /// Twice the marginal of the kernel at the wall over the distance to it [1/m^2].
@@ -40,13 +40,13 @@ struct Plane {
     measured: Option<u16>,
 }
 
-/// Where two walls of a tank meet: the part behind both is counted once, not twice.
+/// Corner of two walls of a tank: the part behind both is counted once, not twice.
 #[derive(Clone, Copy, Debug)]
 struct Corner {
     point: Vector,
-    /// Signs that turn the outside of both walls into the quadrant x < a, y < b.
+    /// Signs that map the outside of both walls to the quadrant x < a, y < b.
     outward: Vector,
-    /// The measured numbers of the upright and of the level wall.
+    /// The measured indices of the vertical and of the horizontal wall.
     measured: [Option<u16>; 2],
 }
 
@@ -87,7 +87,7 @@ impl Walls {
         self.planes.is_empty() && self.rectangles.is_empty()
     }
 
-    /// A place on a wall along each axis, where there is one: grids are laid there [m].
+    /// A wall coordinate along each axis, if there is one: grids are aligned with it [m].
     pub(crate) fn anchor(&self) -> Vector {
         let along = |axis: usize| {
             let wall = self.planes.iter().find(|plane| plane.normal[axis].abs() == 1.0);
@@ -120,7 +120,7 @@ impl Walls {
         planes.chain(self.rectangles.iter().filter_map(move |rectangle| rectangle.hit_on_path(start, x)))
     }
 
-    /// The walls that a disc about `x` overlaps: by how much, and the way out.
+    /// The walls that a disc about `x` overlaps: the overlap, and the direction out.
     pub fn touches(&self, x: Vector, radius: Real) -> impl Iterator<Item = Hit> + '_ {
         let planes = self.planes.iter().filter_map(move |plane| plane.hit(x - plane.normal * radius));
         planes.chain(self.rectangles.iter().filter_map(move |rectangle| rectangle.touch(x, radius)))
@@ -131,13 +131,13 @@ impl Walls {
         self.planes.iter().map(|plane| plane.velocity.length_squared()).fold(0.0, Real::max)
     }
 
-    /// Whether any wall holds a viscous fluid back.
+    /// Whether any wall is a no-slip wall for viscous fluids.
     pub fn any_without_slip(&self) -> bool {
         let planes = self.planes.iter().map(|plane| plane.slip);
         planes.chain(self.rectangles.iter().map(|rectangle| rectangle.slip)).any(|slip| slip == Slip::None)
     }
 
-    /// The walls without slip that a kernel at `x` reaches; distances count as at least `least`.
+    /// The no-slip walls within the kernel radius of `x`; distances are at least `least`.
     ///
     /// The velocity goes on linearly behind the wall, so that it is the wall's at the wall (Morris et
     /// al. 1997). Integrated over the half-plane, the Laplacian of Brookshaw 1985 then is
@@ -176,13 +176,13 @@ impl Walls {
         x
     }
 
-    /// Least extent of a box [m]: what goes less far in a substep passes none. Infinite without boxes.
+    /// Least extent of a box [m]: a shorter path in a substep cannot pass through one. Infinite without boxes.
     pub(crate) fn thinnest(&self) -> Real {
         let extents = self.rectangles.iter().map(|rectangle| (rectangle.max - rectangle.min).min_element());
         extents.fold(Real::INFINITY, Real::min)
     }
 
-    /// Whether what is turned out of one wall may come into another: at corners that are not square, and at boxes.
+    /// Whether a path turned out of one wall may enter another: at corners that are not square, and at boxes.
     pub(crate) fn are_crowded(&self) -> bool {
         self.crowded
     }
@@ -294,7 +294,7 @@ fn ring(min: Vector64, max: Vector64) -> [Vector64; 4] {
     [min, Vector64::new(max.x, min.y), max, Vector64::new(min.x, max.y)]
 }
 
-/// The closed sides of a tank, joined into as few lines as they make.
+/// The closed sides of a tank, joined into the smallest number of lines.
 fn tank_outlines(min: Vector64, max: Vector64, open: &[Side]) -> Vec<WallOutline> {
     let corners = ring(min, max);
     let sides = [Side::Bottom, Side::Right, Side::Top, Side::Left];

@@ -1,4 +1,4 @@
-//! The way out of a box: for points, discs and paths.
+//! The direction out of a box: for points, discs and paths.
 
 use super::{Hit, Rectangle};
 use crate::math::{Real, Vector};
@@ -43,8 +43,8 @@ impl Rectangle {
         nearest.filter(open).or_else(|| self.entry(start, x)).or(nearest)
     }
 
-    /// By slabs: the path is inside from the last of the sides it enters to the first it leaves. What
-    /// starts inside (on a side, but for rounding) counts as starting on the side nearest to it.
+    /// Slab method: the path is inside from the last side it enters to the first side it leaves. A path that
+    /// starts inside (or on a side, within rounding) is treated as starting on the nearest side.
     fn entry(&self, start: Vector, x: Vector) -> Option<Hit> {
         let mut from = start;
         if let Some(inside) = self.hit(start) {
