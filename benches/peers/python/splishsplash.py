@@ -8,7 +8,7 @@ import time
 dx, width, height, tank_width, tank_height, seconds, look = map(float, sys.argv[1:8])
 method, _, error = sys.argv[8].partition(":")
 name = "DFSPH" if method == "dfsph" else "PBF"
-# What it is asked for is read back from it before the first step.
+# The settings are read back from the solver before the first step.
 limits = {"maxError": float(error), "maxIterations": 100} if method == "dfsph" else {"maxIterations": 5}
 os.environ["OMP_NUM_THREADS"] = "1"
 import numpy as np  # noqa: E402
