@@ -3,7 +3,7 @@
 # Renews the sections of docs/peers.md that it measures, and the pictures of liquids. A solver that cannot be had,
 # breaks, or does not use the settings it was given makes the command fail.
 #
-#   benches/peers.sh [--only liquids|bodies] [--particles 5000,20000] [--seconds 2] [--radius 3,2] [--coarse no,yes]
+#   benches/peers.sh [--only liquids|bodies] [--particles 5000,20000] [--seconds 2] [--radius 3,2] [--grid no,yes]
 #                    [--peers dfsph,salva,taichi,pbf] [--bodies 5000] [--settle 3] [--substeps 4x1,3x2] [--rows 100]
 set -u
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1

@@ -10,6 +10,7 @@ mod import_circles;
 mod liquids;
 mod obstacles;
 mod plume;
+mod pressure_grid;
 mod shape_matching;
 mod smoke;
 mod stages;

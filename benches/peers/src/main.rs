@@ -1,7 +1,7 @@
 //! unipbd beside other solvers, in one run: `benches/peers.sh` prepares all of them and starts this.
 //!
 //! `unipbd-peers --document FILE.md [--only liquids|bodies] [--chart FILE.svg] [--pictures FOLDER]`;
-//! liquids: `[--particles 5000,20000] [--seconds 2] [--radius 3,2] [--coarse no,yes] [--peers dfsph,salva,taichi,pbf]`;
+//! liquids: `[--particles 5000,20000] [--seconds 2] [--radius 3,2] [--grid no,yes] [--peers dfsph,salva,taichi,pbf]`;
 //! bodies: `[--bodies 5000] [--settle 3] [--substeps 4x1,3x2,2x3] [--rows 100] [--stand 10]`.
 //!
 //! Each section of the document is written when it is measured. A solver that breaks, or does not use the settings that
@@ -29,7 +29,7 @@ and a run whose settings differ from those asked for fails.
 Density errors C = rho/rho0 - 1 are those of a cubic spline over interior particles, the same for all, averaged over
 time: the mean of max(C, 0) is called compression, that of max(-C, 0) dilation, and their sum, the mean of |C|, decides
 which settings are compared. Of unipbd's settings only those are shown that no other one beats in both time and |C|. With
-a coarse projection the target bounds the way of a substep, not the compression.
+the pressure grid the target bounds the way of a substep, not the compression.
 
 ![processor time over that of unipbd at no larger density error](images/peers.svg)
 

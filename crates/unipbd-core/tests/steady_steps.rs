@@ -4,7 +4,8 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use unipbd_core::scene::{
-    Block, BodyDescription, Emitter, Gas, Liquid, Profile, Scene, Smoke, SmokeSource, SolverSettings, Substeps, Tank,
+    Block, BodyDescription, Emitter, Gas, Liquid, PressureGridUse, Profile, Scene, Smoke, SmokeSource, SolverSettings,
+    Substeps, Tank,
 };
 use unipbd_core::{BuildOptions, Solver};
 
@@ -75,8 +76,8 @@ fn a_pool_steps_without_allocating() {
 }
 
 #[test]
-fn a_pool_with_a_coarse_projection_steps_without_allocating() {
-    let scene = Scene { solver: SolverSettings { coarse_projection: 3, ..fixed(4) }, ..pool() };
+fn a_pool_with_the_pressure_grid_steps_without_allocating() {
+    let scene = Scene { solver: SolverSettings { pressure_grid: PressureGridUse::On, ..fixed(4) }, ..pool() };
     assert_eq!(allocations(&scene, 60, 20), 0);
 }
 

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::process::ExitCode;
 
-use unipbd_core::scene::{GradientPoint, LegacyKernel, SolverSettings, Substeps};
+use unipbd_core::scene::{GradientPoint, LegacyKernel, PressureGridUse, SolverSettings, Substeps};
 use unipbd_validation::case::Trial;
 use unipbd_validation::document::{with_introduction, with_section};
 use unipbd_validation::plan::{Line, lines};
@@ -98,10 +98,19 @@ fn run_one(name: &str, rest: &[String]) -> Result<bool, Box<dyn std::error::Erro
         }
     }
     let (resolution, target) = (trial.resolution, trial.solver.target_compression);
-    let line = Line { case, resolution, target, coarse: trial.solver.coarse_projection > 0 };
+    let line = Line { case, resolution, target, grid: trial.solver.pressure_grid != PressureGridUse::Off };
     let entry = Entry { line, result: case.run_trial(&trial) };
     show(&entry);
     Ok(entry.verdict() == "holds")
+}
+
+fn grid_use(word: &str) -> Result<PressureGridUse, String> {
+    match word {
+        "auto" => Ok(PressureGridUse::Auto),
+        "on" => Ok(PressureGridUse::On),
+        "off" => Ok(PressureGridUse::Off),
+        _ => Err(format!("pressure_grid is \"auto\", \"on\" or \"off\", not \"{word}\"")),
+    }
 }
 
 /// Sets a key of the solver, or an option for comparison.
@@ -112,7 +121,7 @@ fn set(trial: &mut Trial, key: &str, value: &str) -> Result<(), Box<dyn std::err
         "substeps" => solver.substeps = Substeps::Fixed(value.parse()?),
         "iterations" => solver.iterations = value.parse()?,
         "tolerance" => solver.tolerance = value.parse()?,
-        "coarse_projection" => solver.coarse_projection = value.parse()?,
+        "pressure_grid" => solver.pressure_grid = grid_use(value)?,
         "kernel_radius" => solver.kernel_radius = value.parse()?,
         "shifting" => solver.shifting = Some(value.parse()?),
         "relaxation" => solver.relaxation = Some(value.parse()?),

@@ -93,25 +93,21 @@ pub const NOTES: &[(&str, &str)] = &[
      alone it would win that case; hence |C|.",
     ),
     (
-        "The coarse projection",
-        "A grid of cells two spacings wide carries the smooth pressure (`solver.coarse_projection`), three steps of \
-     conjugate gradients for the pressure, two for moves (a third changes nothing, with one a drop drawn out gains 2e-5 of \
-     momentum); the particles correct what is left. The number of substeps then \
-     follows from the speed. What came out on the way, by dam breaks of 5,000 and 20,000 and columns 30 to 300 deep: \
-     leaving only a share of the particles' corrections to their velocities (0.3 within the liquid) raises energy by \
-     1 to 3 % at h = 2 dx and the worst density error by half; taken up whole, energy grows by at most 0.4 % and \
-     waves still lose half as much as without the grid. Moves that take back density error lift the liquid, at h = 2 dx: a \
-     fifth of the error per substep by 0.6 % of energy, a tenth by 0.2 to 0.6 % (the more, the finer and the looser the \
-     target), 0.06 by at most 0.4 %, at h = 2.5 dx by nothing. With 0.06 instead of a tenth the smoothed density error is a \
-     tenth smaller too, the worst C a tenth larger. Faces closed by walls must be felt like the \
-     next ones away from them, else the lowest row falls and the column creeps up by a spacing in ten seconds. Cells \
-     within the liquid that are filled less than 0.9 are drawn together: the grid would keep their pores open.\n\n\
+        "The pressure grid",
+        "A grid of cells two spacings wide carries the smooth pressure (`solver.pressure_grid`); the particles correct \
+     what is left, and the number of substeps follows from the speed. Conjugate gradients end at a hundredth of the first \
+     residual, at less where densities differ, by the root of their ratio. Rigid bodies are part of the operator (Batty et \
+     al. 2007), so light and heavy ones are equally stable. Two settings decide about energy. Velocities follow three \
+     tenths of the corrections of the particles: all of it takes 2 to 6 % of the energy of a drop drawn out, none of it \
+     gives a dam break 0.7 %. Moves take 0.06 of the density error per frame, however many substeps it has: per substep, as \
+     before, waves lost the more, the more substeps there were. Faces closed by walls must be felt like the next ones away \
+     from them, else the lowest row falls. Cells within the liquid that are filled less than 0.9 are drawn together: the \
+     grid would keep their pores open.\n\n\
      Its pressures are those of the grid and of the multipliers added up: read from the momentum of pairs, as without \
      a grid, they come out 5 to 11 % low, since the grid pushes smoothly whatever the arrangement. The target \
-     compression bounds the way of a substep alone (0.8 dx at 1 %, as its root). The fuzzer gives it to every second scene that it can carry. \
-     Why three steps: what two leave of the pressure made a wave of 200 dx grow by 1.4 % per period; with three it loses \
-     1.2 %, with eight 0.9 %, and a column of 100 dx is compressed by 0.06 instead of 0.35 % at most. A wave of 32 dx has an \
-     amplitude of a quarter of a cell: what is said of its decay is the noise of that.",
+     compression bounds the way of a substep alone (0.8 dx at 1 %, as its root; 0.5 dx for fluids that fill their domain). \
+     The fuzzer gives the grid to every second scene that it supports. A wave of 32 dx has an amplitude of a quarter of a \
+     cell: what is said of its decay is the noise of that.",
     ),
     (
         "Where energy grows",

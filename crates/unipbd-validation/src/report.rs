@@ -50,7 +50,7 @@ A case that misses its band says so.
 /// Heading and body of the section of a case, from all of its entries.
 pub fn section(entries: &[Entry]) -> Option<(String, String)> {
     let case = entries.first()?.line.case;
-    let (coarse, own): (Vec<&Entry>, Vec<&Entry>) = entries.iter().partition(|entry| entry.line.coarse);
+    let (grid, own): (Vec<&Entry>, Vec<&Entry>) = entries.iter().partition(|entry| entry.line.grid);
     let heading = case.name.replace('_', " ");
     let mut text = format!("Truth: {}.\n\nMeasured {}.\n\n", case.truth, stamp());
     table(&mut text, &own);
@@ -58,9 +58,9 @@ pub fn section(entries: &[Entry]) -> Option<(String, String)> {
     if let Some(order) = order(&own) {
         let _ = writeln!(text, "\nOrder of convergence of the first figure with the spacing: {order:.2}.");
     }
-    if !coarse.is_empty() {
-        let _ = writeln!(text, "\n### {heading} with a coarse projection\n");
-        table(&mut text, &coarse);
+    if !grid.is_empty() {
+        let _ = writeln!(text, "\n### {heading} with the pressure grid\n");
+        table(&mut text, &grid);
     }
     Some((heading, text))
 }
@@ -75,7 +75,7 @@ pub fn charts_section(charts: &[String]) -> String {
          nothing is 10 % cheaper without more error, or 10 % more exact at no more cost, which is how much both scatter. Each point \
          is run three times, those of wave and box nine times, in rounds over all curves, with relaxations half a percent apart: the \
          least processor time counts, and the mean of the errors, as those two hang on the arrangement by chance. The density error |C| is measured alike for all kernels, from positions alone: \
-         by a cubic spline whose radius is that of the widest kernel compared. The coarse projection is drawn, not judged: it carries \
+         by a cubic spline whose radius is that of the widest kernel compared. The pressure grid is drawn, not judged: it carries \
          one liquid in static walls alone. Nor are, for the wave and the box, settings whose worst C in the dam break is \
          above 6 %: what gives way like a sponge keeps a wave, but is no liquid.\n\n",
     );

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use unipbd_core::scene::{GradientPoint, LegacyKernel, Liquid, Scene, SolverSettings, Substeps};
+use unipbd_core::scene::{GradientPoint, LegacyKernel, Liquid, PressureGridUse, Scene, SolverSettings, Substeps};
 
 use crate::case::{Case, Outcome, Trial};
 use crate::cases::{self, DENSITY_ERROR, LEVEL, WORST};
@@ -134,11 +134,11 @@ pub const VARIANTS: &[Variant] = &[
         },
         scan: Scan::Iterations,
     },
-    Variant { name: COARSE, change: |t| t.solver.coarse_projection = 3, scan: Scan::Targets },
+    Variant { name: WITH_GRID, change: |t| t.solver.pressure_grid = PressureGridUse::On, scan: Scan::Targets },
 ];
 
 /// Drawn, but does not count: it carries one liquid in static walls alone, and is no choice for all of these cases.
-const COARSE: &str = "coarse projection, n by target";
+const WITH_GRID: &str = "pressure grid, n by target";
 
 /// Sets kernel radius and where the constraint is taken.
 fn at(trial: &mut Trial, radius: f64, gradients: GradientPoint) {
@@ -196,7 +196,7 @@ impl Timed {
 
     /// Whether a figure of it is judged.
     fn counts(&self, norm: &Norm) -> bool {
-        self.variant.name != COARSE && (!norm.blind || self.worst <= HOLDS_WATER)
+        self.variant.name != WITH_GRID && (!norm.blind || self.worst <= HOLDS_WATER)
     }
 
     fn is_done(&self, rounds: u32) -> bool {

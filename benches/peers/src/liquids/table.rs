@@ -89,9 +89,9 @@ fn row(case: &Case, of: &Outcome, end: &str) -> String {
 fn settings() -> Vec<Setting> {
     let radii = option("--radius", "3,2");
     let radii = radii.split(',').map(|radius| radius.parse::<f64>().expect("--radius takes numbers"));
-    let coarse = option("--coarse", "no,yes");
-    let coarse: Vec<bool> = coarse.split(',').map(|word| word == "yes").collect();
-    let with = |radius: f64, target: f64| coarse.iter().map(move |&coarse| Setting { radius, target, coarse });
+    let grid = option("--grid", "no,yes");
+    let grid: Vec<bool> = grid.split(',').map(|word| word == "yes").collect();
+    let with = |radius: f64, target: f64| grid.iter().map(move |&grid| Setting { radius, target, grid });
     radii.flat_map(|radius| TARGETS.into_iter().flat_map(move |target| with(radius, target))).collect()
 }
 

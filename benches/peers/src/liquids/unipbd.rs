@@ -1,7 +1,7 @@
 //! unipbd on the cases of [`Case`].
 
 use unipbd_core::BuildOptions;
-use unipbd_core::scene::{Block, Liquid, Scene, SolverSettings, Tank};
+use unipbd_core::scene::{Block, Liquid, PressureGridUse, Scene, SolverSettings, Tank};
 
 use super::{Case, GRAVITY, Solver, Spent};
 use crate::readback::ReadBack;
@@ -40,20 +40,20 @@ pub struct Setting {
     pub radius: f64,
     /// Target compression: it takes as many substeps as that wants.
     pub target: f64,
-    /// Whether a coarse projection goes before that of the particles.
-    pub coarse: bool,
+    /// Whether the pressure grid is on.
+    pub grid: bool,
 }
 
 impl Setting {
     pub fn name(self) -> String {
-        let name = if self.coarse { "unipbd, coarse projection" } else { "unipbd" };
+        let name = if self.grid { "unipbd, pressure grid" } else { "unipbd" };
         format!("{name}, h = {} dx, target {} %", self.radius, 100.0 * self.target)
     }
 }
 
 /// unipbd with a setting, on one thread.
 pub fn unipbd(case: &Case, setting: Setting) -> Result<Box<dyn Solver>, String> {
-    let Setting { radius, target, coarse } = setting;
+    let Setting { radius, target, grid } = setting;
     let solver = SolverSettings { kernel_radius: radius, target_compression: target, ..SolverSettings::default() };
     let scene = Scene {
         spacing: case.dx,
@@ -62,7 +62,7 @@ pub fn unipbd(case: &Case, setting: Setting) -> Result<Box<dyn Solver>, String> 
         liquid: vec![Liquid::new("water", 1000.0)],
         block: vec![Block::new("water", [0.0, 0.0], case.block)],
         tank: vec![Tank::new([0.0, 0.0], case.tank)],
-        solver: SolverSettings { coarse_projection: if coarse { 3 } else { 0 }, ..solver },
+        solver: SolverSettings { pressure_grid: if grid { PressureGridUse::On } else { PressureGridUse::Off }, ..solver },
         ..Scene::default()
     };
     let options = BuildOptions { threads: Some(1), ..BuildOptions::default() };

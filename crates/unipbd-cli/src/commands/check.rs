@@ -68,6 +68,7 @@ fn text(scene: &Scene, simulation: &Simulation, cost: &Cost) -> String {
         };
         lines.push(format!("  substeps       {substeps}{choice}"));
     }
+    lines.push(format!("  pressure grid  {}", pressure_grid(scene)));
     lines.push(format!(
         "  memory         {} at the start, about {} at the peak",
         bytes(cost.memory_at_start),
@@ -78,6 +79,7 @@ fn text(scene: &Scene, simulation: &Simulation, cost: &Cost) -> String {
 }
 
 fn object(name: &str, scene: &Scene, cost: &Cost) -> Value {
+    let grid = scene.pressure_grid();
     json!({
         "type": "check",
         "valid": true,
@@ -88,9 +90,16 @@ fn object(name: &str, scene: &Scene, cost: &Cost) -> Value {
         "density_error_mean": cost.start.density_error_mean,
         "density_error_max": cost.start.density_error_max,
         "substeps": cost.first_frame.as_ref().ok(),
+        "pressure_grid": { "used": grid.used, "reason": grid.reason },
         "memory_bytes": { "at_start": cost.memory_at_start, "peak": cost.memory_at_peak },
         "wall_time": cost.wall_time.as_secs_f64(),
     })
+}
+
+/// Whether the scene uses the pressure grid, and why.
+pub(super) fn pressure_grid(scene: &Scene) -> String {
+    let choice = scene.pressure_grid();
+    format!("{}: {}", if choice.used { "on" } else { "off" }, choice.reason)
 }
 
 fn problem(problem: &Diagnostic) -> Value {

@@ -32,6 +32,11 @@ const RENAMED: &[Renamed] = &[
         new: &["legacy.averaged_contacts"],
         reason: "it holds the over-relaxation of \"averaged\"; leave both out for \"split\"",
     },
+    Renamed {
+        old: "solver.coarse_projection",
+        new: &["solver.pressure_grid"],
+        reason: "\"on\", \"off\" or \"auto\" in place of a number of steps",
+    },
     Renamed { old: "contacts.mass_scaling", new: &["legacy.mass_scaling"], reason: FOR_COMPARISON },
     Renamed { old: "gas.viscosity", new: &["gas.xsph", "gas.kinematic_viscosity"], reason: TWO_VISCOSITIES },
 ];

@@ -19,7 +19,7 @@ use crate::parallel::Parallelism;
 use crate::particles::{NewParticle, OptionalColumns, Particles};
 use crate::periodic::{Periodic, PeriodicAxis};
 use crate::phase::{MaterialIndex, Phase};
-use crate::pressure_grid::PressureGrid;
+use crate::pressure_grid::{Accuracy, Mixture, PressureGrid};
 use crate::rng::Rng;
 use crate::scene::{BodySolver, CheckedScene, GradientPoint, MaterialRef, Points, Problems, Scene, disc_points};
 use crate::sleep::LiquidSleep;
@@ -110,8 +110,7 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         walls: Walls::new(scene),
         neighbors: Neighbors::new(periodic, reach, real(least_skin), cost),
         search_positions,
-        pressure_grid: (scene.solver.coarse_projection > 0)
-            .then(|| PressureGrid::new(real(scene.spacing), scene.solver.coarse_projection)),
+        pressure_grid: scene.uses_pressure_grid().then(|| pressure_grid(scene)),
         groups,
         effects,
         smoke: (!scene.smoke.is_empty()).then(|| SmokeAdvection::new(scene)),
@@ -128,6 +127,14 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         seed,
         parallelism: Parallelism::Serial,
     }
+}
+
+fn pressure_grid(scene: &Scene) -> PressureGrid {
+    let mixture = Mixture::new(scene);
+    // The light fluid feels the residual of the heavy one.
+    let tolerance = scene.solver.pressure_tolerance * mixture.lightest().sqrt();
+    let accuracy = Accuracy { tolerance, most: scene.solver.pressure_steps };
+    PressureGrid::new(real(scene.spacing), mixture, accuracy, 1.0 / scene.fps)
 }
 
 fn groups(

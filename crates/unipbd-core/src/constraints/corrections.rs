@@ -45,6 +45,12 @@ impl Corrections {
         &mut self.shift
     }
 
+    /// Displacements, and moves that velocities do not follow, to be written [m].
+    pub(crate) fn both_mut(&mut self) -> (&mut [Vector], &mut [Vector]) {
+        self.shift.resize(self.displacement.len(), Vector::ZERO);
+        (&mut self.displacement, &mut self.shift)
+    }
+
     /// Whether rows are moved in a way that their velocities do not follow.
     pub(crate) fn any_shifted(&self) -> bool {
         self.parts.grid_shifts || !self.shift.is_empty()

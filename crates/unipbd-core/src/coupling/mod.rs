@@ -6,7 +6,7 @@ mod soft_bodies;
 
 use crate::math::{Real, Vector, Vector64, vector, wide};
 use crate::particles::Particles;
-use crate::rigid::contact::Contacts;
+use crate::rigid::contact::{Contacts, Joint, JointKind};
 use crate::rigid::{Bodies, Body};
 use crate::rows::RowIndex;
 use push_out::Penetration;
@@ -113,6 +113,28 @@ impl RigidBodies {
     /// One iteration of all contacts and joints.
     pub(crate) fn iterate_contacts(&mut self) {
         self.contacts.iterate(&mut self.bodies);
+    }
+
+    /// The bodies that turn about a hinge in the world or on an immovable body, and the way from their centre of mass to
+    /// it [m].
+    pub(crate) fn hinged(&self) -> Vec<(u32, Vector64)> {
+        let fixed = |id: Option<u32>| id.is_none_or(|id| !self.bodies.is_dynamic(id as usize));
+        let arm = |body: u32, anchor: Vector64| Vector64::from_angle(self.bodies.pose(body).angle).rotate(anchor);
+        let hinges = self.contacts.joint_loads().map(|(joint, ..)| joint);
+        let of_joint = |joint: Joint| match (joint.kind, joint.other) {
+            (JointKind::Hinge { .. }, other) if fixed(other) => Some((joint.body, arm(joint.body, joint.anchor))),
+            (JointKind::Hinge { .. }, Some(other)) if fixed(Some(joint.body)) => {
+                Some((other, arm(other, joint.other_anchor)))
+            }
+            _ => None,
+        };
+        hinges.filter_map(of_joint).collect()
+    }
+
+    /// The bodies to be pushed by a fluid, and whether a body has samples that the fluid meets.
+    pub(crate) fn immersed(&mut self) -> (&mut Bodies, impl Fn(u32) -> bool) {
+        let first = &self.first_sample;
+        (&mut self.bodies, move |body: u32| first[body as usize] < first[body as usize + 1])
     }
 
     /// Puts the samples where the bodies are predicted to be.

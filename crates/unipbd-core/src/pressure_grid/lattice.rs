@@ -1,7 +1,7 @@
 //! The box of cells around the liquid, and the interpolation weights of its nodes.
 
 use super::spans::BLOCK;
-use crate::math::{Real, Vector};
+use crate::math::{Real, Vector, Vector64, wide};
 use crate::parallel::{Aabb, Parallelism};
 use crate::particles::Particles;
 use crate::walls::Walls;
@@ -77,6 +77,11 @@ impl Lattice {
         self.origin + (self.lower + Vector::new(i as Real, j as Real) - Vector::ONE) * self.cell
     }
 
+    /// Lower left corner of the box [m].
+    pub fn lowest(&self) -> Vector64 {
+        wide(self.origin) + wide(self.lower) * f64::from(self.cell)
+    }
+
     /// Places the box around all dense particles.
     pub fn cover(&mut self, particles: &Particles, walls: &Walls, parallelism: Parallelism) {
         self.origin = walls.anchor();
@@ -113,6 +118,19 @@ impl Lattice {
     pub fn holds(&self, place: Vector) -> bool {
         let (right, top) = (self.width as Real - 0.5, self.height as Real - 0.5);
         place.x > 0.5 && place.y > 0.5 && place.x < right && place.y < top
+    }
+
+    /// The cell that holds a place, in cells, if it is one of the box.
+    pub fn cell_at(&self, place: Vector) -> Option<usize> {
+        let inside = place.x >= 0.0 && place.y >= 0.0;
+        let (i, j) = (place.x as usize, place.y as usize);
+        (inside && i < self.width && j < self.height).then(|| (j + 1) * self.stride() + i + 1)
+    }
+
+    /// Corners of the box [m].
+    pub fn bounds(&self) -> [Vector; 2] {
+        let low = self.origin + self.lower * self.cell;
+        [low, low + Vector::new(self.width as Real, self.height as Real) * self.cell]
     }
 
     /// The nodes around a place, in cells.

@@ -7,11 +7,20 @@
 //! solution of the same system moves particles, without their velocities, out of cells that are too full. Nothing is
 //! kept from one substep to the next: a saved run goes on bit for bit.
 
+mod chords;
+mod components;
+mod felt;
+mod flow;
 mod lattice;
 mod level;
+mod mixture;
 mod multigrid;
 mod openings;
+mod operator;
+mod readings;
+mod solids;
 mod spans;
+mod surface;
 mod system;
 mod transfer;
 
@@ -19,79 +28,161 @@ use crate::bytes::held;
 use crate::math::{Real, Vector, Vector64, wide};
 use crate::parallel::Parallelism;
 use crate::particles::{Particles, displaced};
-use crate::walls::{Hit, Walls};
+use crate::rigid::{Bodies, Twist};
+use crate::walls::Walls;
+use components::Components;
 use lattice::Lattice;
-use multigrid::Multigrid;
+use level::Level;
+pub(crate) use mixture::Mixture;
+pub(crate) use multigrid::Accuracy;
+use multigrid::{Multigrid, Problem};
 use openings::Openings;
+use operator::Operator;
+pub(crate) use solids::Immersed;
+use solids::{Solids, Units, twist};
 use system::System;
 use transfer::Transfer;
 
 /// Cells of the grid are this many spacings wide: four particles each.
 const CELL: Real = 2.0;
-/// Part of the density error of a cell that the grid takes away in one substep, by moves alone.
-const DENSITY_RELAXATION: Real = 0.06;
-/// Solver steps for the position correction. It is small, and the residual is left to the next substep. With one step
-/// the residual changes the momentum (2e-5 of that of a drop drawn out).
-const STEPS_OF_MOVES: u32 = 2;
+/// Part of the density error of a cell that the grid takes away in one frame, by moves alone.
+const DENSITY_RELAXATION: f64 = 0.06;
+/// Tolerance of the moves over that of the pressure: they are small, and the residual is left to the next substep. With
+/// one step the residual changes the momentum (2e-5 of that of a drop drawn out).
+const LOOSER_MOVES: f64 = 5.0;
+/// Places per cell at which the pressure on a wall is read.
+const STEPS_PER_CELL: Real = 4.0;
 /// Limit of the displacement by the grid in one substep [spacings].
 const FARTHEST: Real = 0.1;
 
-/// The coarse projection of a scene of one liquid.
+/// The pressure grid of a scene.
 pub(crate) struct PressureGrid {
     spacing: Real,
-    /// Steps of the solver for the pressure.
-    steps: u32,
+    mixture: Mixture,
+    accuracy: Accuracy,
+    frame_time: f64,
     lattice: Lattice,
     openings: Openings,
     transfer: Transfer,
     system: System,
     multigrid: Multigrid,
+    components: Components,
+    solids: Solids,
+    operator: Operator,
 }
 
 impl PressureGrid {
-    /// For particles of this spacing [m], with this many steps of the solver for the pressure.
-    pub(crate) fn new(spacing: Real, steps: u32) -> Self {
+    /// For particles of this spacing [m], with this accuracy of the pressure, and frames of this length [s].
+    pub(crate) fn new(spacing: Real, mixture: Mixture, accuracy: Accuracy, frame_time: f64) -> Self {
         PressureGrid {
             spacing,
-            steps,
+            mixture,
+            accuracy,
+            frame_time,
             lattice: Lattice::new(CELL * spacing),
             openings: Openings::default(),
             transfer: Transfer::default(),
             system: System::default(),
             multigrid: Multigrid::default(),
+            components: Components::default(),
+            solids: Solids::default(),
+            operator: Operator::default(),
         }
     }
 
-    /// Changes the velocities of predicted particles by the pressure of the grid, and moves them along.
-    pub(crate) fn project(&mut self, particles: &mut Particles, walls: &Walls, dt: Real, parallelism: Parallelism) {
+    /// Changes the velocities of predicted particles and bodies by the pressure of the grid, and moves them along.
+    pub(crate) fn project(
+        &mut self,
+        particles: &mut Particles,
+        (walls, bodies): (&Walls, Option<Immersed<'_>>),
+        dt: f64,
+        parallelism: Parallelism,
+    ) {
+        self.assemble(particles, (walls, bodies.as_ref()), dt, parallelism);
+        let (system, multigrid) = (&mut self.system, &mut self.multigrid);
+        let mut solve = |accuracy: Accuracy, of_pressure: bool| {
+            let mut solution = std::mem::take(if of_pressure { &mut system.pressure } else { &mut system.potential });
+            let right_side = if of_pressure { &system.divergence } else { &system.excess };
+            let problem = Pressed {
+                accuracy,
+                system,
+                components: &self.components,
+                solids: &self.solids,
+                operator: &self.operator,
+                stride: self.lattice.stride(),
+            };
+            multigrid.solve(right_side, &mut solution, &problem, parallelism);
+            *(if of_pressure { &mut system.pressure } else { &mut system.potential }) = solution;
+        };
+        solve(self.accuracy, true);
+        solve(Accuracy { tolerance: LOOSER_MOVES * self.accuracy.tolerance, ..self.accuracy }, false);
+        system.difference(&self.lattice, &self.openings, multigrid.spans(), parallelism);
+        self.push(particles, dt as Real, parallelism);
+        if let Some(immersed) = bodies {
+            self.push_bodies(immersed.bodies, dt);
+        }
+        self.system.set_constants(&self.lattice, &self.openings, &self.components);
+    }
+
+    /// Sets up both systems.
+    fn assemble(
+        &mut self,
+        particles: &Particles,
+        (walls, bodies): (&Walls, Option<&Immersed<'_>>),
+        dt: f64,
+        parallelism: Parallelism,
+    ) {
         let area = self.spacing * self.spacing;
         self.lattice.cover(particles, walls, parallelism);
         if self.openings.measure(&self.lattice, walls, parallelism) {
             self.multigrid.allocate(&self.lattice, &self.openings, parallelism);
-            self.system.allocate(self.lattice.len());
+            self.system.allocate(&self.openings);
         } else {
             self.system.clear(self.multigrid.spans());
         }
-        self.transfer.gather(&self.lattice, particles, area, parallelism);
-        let (lattice, openings, fields) = (&self.lattice, &self.openings, self.transfer.fields());
-        let (system, multigrid) = (&mut self.system, &mut self.multigrid);
-        system.read_surface(lattice, openings, fields, parallelism);
-        let finest = multigrid.finest(&system.depth);
-        system.couple(lattice, openings, finest, parallelism);
+        let (lattice, openings, stride) = (&self.lattice, &self.openings, self.lattice.stride());
+        self.transfer.gather(lattice, particles, (&self.mixture, area), parallelism);
+        let fields = self.transfer.fields();
+        let (system, multigrid, solids) = (&mut self.system, &mut self.multigrid, &mut self.solids);
+        if let Some(immersed) = bodies {
+            let cell_mass = f64::from(CELL * CELL * self.mixture.heaviest);
+            solids.find(lattice, immersed, Units { cell_mass, dt });
+            system.cover(openings, solids, stride);
+        }
+        system.read_surface(lattice, openings, (fields, self.mixture.fills), parallelism);
+        multigrid.find(&system.depth);
+        system.read_flow(fields, &self.mixture, multigrid.spans(), parallelism);
+        let (spans, couplings) = multigrid.finest_couplings();
+        system.couple(lattice, openings, (spans, &mut *couplings), parallelism);
+        if solids.any() {
+            self.operator.copy(couplings, spans, stride, parallelism);
+        }
+        system.mask(solids, stride, &self.operator, couplings);
+        self.components.find(couplings, spans, stride);
         multigrid.coarsen(parallelism);
-        system.read_flow(fields, multigrid.spans(), parallelism);
-        system.assemble_right_side(lattice, openings, fields, (dt, DENSITY_RELAXATION), multigrid.spans(), parallelism);
-        multigrid.solve(&system.divergence, &mut system.pressure, self.steps, parallelism);
-        multigrid.solve(&system.excess, &mut system.potential, STEPS_OF_MOVES, parallelism);
-        system.difference(lattice, openings, multigrid.spans(), parallelism);
-        self.push(particles, dt, parallelism);
+        let taken_back = (DENSITY_RELAXATION * dt / self.frame_time) as Real;
+        let rates = (dt as Real, taken_back);
+        system.assemble_right_side(lattice, openings, fields, rates, (solids, multigrid.spans()), parallelism);
+    }
+
+    /// Loads the bodies with the pressure of the grid, and moves them with the fluid around them.
+    fn push_bodies(&mut self, bodies: &mut Bodies, dt: f64) {
+        let (solids, system, stride) = (&self.solids, &self.system, self.lattice.stride());
+        let cell_mass = f64::from(CELL * CELL * self.mixture.heaviest);
+        let farthest = f64::from(FARTHEST * self.spacing);
+        for solid in &solids.solids {
+            let [x, y, turn] = solids.load(solid, &system.pressure, stride).map(|load| load * cell_mass / dt);
+            bodies.load(solid.body, Vector64::new(x, y), turn, dt);
+            let Twist { linear, angular } = twist(solids.change(solid, &system.potential, stride));
+            bodies.shift(solid.body, linear.clamp_length_max(farthest), angular);
+        }
     }
 
     /// Takes the changes of the faces to the particles.
     fn push(&self, particles: &mut Particles, dt: Real, parallelism: Parallelism) {
         let (lattice, system, farthest) = (&self.lattice, &self.system, FARTHEST * self.spacing);
         let (inverse_masses, starts) = (&particles.inverse_mass, &particles.start);
-        let rows = particles.dense();
+        let rows = particles.awake();
         let (velocities, remainders) = (&mut particles.velocity[..rows], &mut particles.remainder[..rows]);
         let (displacements, positions) = (&mut particles.displacement[..rows], &mut particles.position[..rows]);
         parallelism.chunks4(velocities, remainders, displacements, positions, |first, velocity, remainder, u, x| {
@@ -121,27 +212,28 @@ impl PressureGrid {
         let (lattice, openings, system) = (&self.lattice, &self.openings, &self.system);
         let starts = &particles.start;
         let (rows, inverse_masses) = (particles.dense(), &particles.inverse_mass);
-        let factor = per_pressure * lattice.cell / dt;
+        let factor = per_pressure * lattice.cell / dt * self.mixture.heaviest;
         parallelism.update(&mut particles.multiplier[..rows], |row, multiplier| {
             if inverse_masses[row] > 0.0 {
-                *multiplier += system.pressure_at(lattice, openings, starts[row]) * factor / inverse_masses[row];
+                *multiplier += system.pressure_at(lattice, openings, starts[row]) * factor;
             }
         });
     }
 
     /// Impulse of the grid pressure on the measured walls in this substep [kg m/s].
-    pub(crate) fn push_walls(&self, particles: &Particles, walls: &Walls, impulses: &mut [Vector64]) {
-        let Some(inverse_mass) = particles.inverse_mass[..particles.dense()].iter().find(|inverse| **inverse > 0.0)
-        else {
-            return;
-        };
-        let mass = CELL * CELL / inverse_mass;
-        self.system.closed_faces(&self.lattice, &self.openings, |place, outward, push| {
-            let facing = |hit: &Hit| -hit.normal.dot(outward);
-            let walls = walls.touches(place, self.lattice.cell).filter(|hit| facing(hit) > 0.5);
-            if let Some(wall) = walls.max_by(|a, b| facing(a).total_cmp(&facing(b))).and_then(|hit| hit.measured) {
-                impulses[usize::from(wall)] += wide(outward * (push * mass));
-            }
+    pub(crate) fn push_walls(&self, walls: &Walls, impulses: &mut [Vector64]) {
+        let (lattice, openings, system) = (&self.lattice, &self.openings, &self.system);
+        let mass_per_length = CELL * CELL * self.mixture.heaviest / lattice.cell;
+        walls.measured_surfaces(lattice.bounds(), |surface| {
+            let [from, to] = surface.ends;
+            let steps = (STEPS_PER_CELL * (to - from).length() / lattice.cell).ceil();
+            let step = (to - from) / steps;
+            let sum = (0..steps as usize).filter_map(|k| {
+                let middle = from + step * (k as Real + 0.5);
+                system.pressure_at_wall(lattice, openings, (middle, surface.normal))
+            });
+            let push = sum.map(f64::from).sum::<f64>() * f64::from(step.length() * mass_per_length);
+            impulses[usize::from(surface.wall)] -= wide(surface.normal) * push;
         });
     }
 
@@ -151,6 +243,41 @@ impl PressureGrid {
             + self.transfer.memory_bytes()
             + self.system.memory_bytes()
             + self.multigrid.memory_bytes()
+            + self.components.memory_bytes()
+            + self.solids.memory_bytes()
+            + self.operator.memory_bytes()
+    }
+}
+
+/// The system of a substep as the solver takes it.
+struct Pressed<'a> {
+    accuracy: Accuracy,
+    system: &'a System,
+    components: &'a Components,
+    solids: &'a Solids,
+    operator: &'a Operator,
+    stride: usize,
+}
+
+impl Problem for Pressed<'_> {
+    fn accuracy(&self) -> Accuracy {
+        self.accuracy
+    }
+
+    fn constrain(&self, column: &mut [Real]) {
+        if self.solids.any() {
+            self.system.clear_masked(column);
+        }
+        self.components.remove_means(column, |cell| self.system.counts(cell));
+    }
+
+    fn image(&self, finest: &Level, (x, out): (&[Real], &mut [Real]), parallelism: Parallelism) {
+        if self.solids.any() {
+            let (of, size) = ((self.system, self.solids), (&finest.spans, self.stride));
+            self.operator.image(of, (x, out), size, parallelism);
+        } else {
+            finest.image(x, out, parallelism);
+        }
     }
 }
 

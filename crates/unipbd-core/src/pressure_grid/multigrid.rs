@@ -15,6 +15,30 @@ const SWEEPS: usize = 2;
 const LAST_SWEEPS: usize = 24;
 const COARSEST: usize = 4;
 
+/// Conjugate gradients end where the energy of a direction is less than this part of what the preconditioner expects.
+const LEAST_ENERGY: f64 = 0.1;
+
+/// When a solution is good enough.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Accuracy {
+    /// Reduction of the residual, in the norm of the preconditioner.
+    pub tolerance: f64,
+    /// Most steps.
+    pub most: u32,
+}
+
+/// A linear system that the multigrid cycle preconditions.
+pub(super) trait Problem {
+    /// When the solution is good enough.
+    fn accuracy(&self) -> Accuracy;
+
+    /// Sets a vector to zero where nothing is sought, and takes out what the operator does not see.
+    fn constrain(&self, column: &mut [Real]);
+
+    /// Applies the operator.
+    fn image(&self, finest: &Level, columns: (&[Real], &mut [Real]), parallelism: Parallelism);
+}
+
 /// Solves the system of one substep.
 #[derive(Default)]
 pub(super) struct Multigrid {
@@ -46,7 +70,7 @@ impl Multigrid {
     }
 
     /// Finds the liquid cells from the depths on the finest grid. The caller then sets the couplings of that grid.
-    pub fn finest(&mut self, depth: &[Real]) -> (&Spans, &mut Couplings) {
+    pub fn find(&mut self, depth: &[Real]) {
         // The image is read only where it was just written.
         self.levels[0].spans.clear(&mut self.direction);
         self.levels.iter_mut().for_each(Level::clear);
@@ -55,6 +79,10 @@ impl Multigrid {
         self.pairs(|finer, coarser| {
             coarser.spans.coarsen(&finer.spans, finer.stride(), coarser.stride(), coarser.cells());
         });
+    }
+
+    /// The liquid cells and the couplings of the finest grid.
+    pub fn finest_couplings(&mut self) -> (&Spans, &mut Couplings) {
         let finest = &mut self.levels[0];
         (&finest.spans, &mut finest.couplings)
     }
@@ -81,33 +109,50 @@ impl Multigrid {
         &self.levels[0].spans
     }
 
-    /// Solves by this many steps of conjugate gradients from zero, which `solution` holds.
-    pub fn solve(&mut self, right_side: &[Real], solution: &mut [Real], steps: u32, parallelism: Parallelism) {
+    /// Solves by conjugate gradients from zero, which `solution` holds.
+    pub fn solve(
+        &mut self,
+        right_side: &[Real],
+        solution: &mut [Real],
+        problem: &impl Problem,
+        parallelism: Parallelism,
+    ) {
         // The right side of the finest grid is the residual all along.
         let finest = &mut self.levels[0];
         finest.spans.each(&mut finest.right_side, parallelism, |first, out| {
             out.copy_from_slice(&right_side[first..][..out.len()]);
         });
-        let mut before = 0.0;
-        for step in 0..steps {
+        problem.constrain(&mut finest.right_side);
+        let Accuracy { tolerance, most } = problem.accuracy();
+        let (mut before, mut enough) = (0.0, 0.0);
+        for step in 0..most {
             self.cycle(0, parallelism);
             let finest = &mut self.levels[0];
-            let (spans, found) = (&finest.spans, &finest.x);
-            let fit = spans.dot(found, &finest.right_side, parallelism);
-            if fit <= 0.0 {
+            problem.constrain(&mut finest.x);
+            let fit = finest.spans.dot(&finest.x, &finest.right_side, parallelism);
+            if step == 0 {
+                enough = fit * tolerance * tolerance;
+            }
+            if fit <= enough {
                 break;
             }
             let kept = if step == 0 { 0.0 } else { (fit / before) as Real };
             before = fit;
+            let (spans, found) = (&finest.spans, &finest.x);
             spans.each(&mut self.direction, parallelism, |first, direction| {
                 let found = &found[first..][..direction.len()];
                 for k in 0..direction.len() {
                     direction[k] = found[k] + kept * direction[k];
                 }
             });
-            finest.image(&self.direction, &mut self.image, parallelism);
+            problem.image(finest, (&self.direction, &mut self.image), parallelism);
             let (direction, image) = (&self.direction, &self.image);
-            let length = (fit / spans.dot(direction, image, parallelism)) as Real;
+            let energy = spans.dot(direction, image, parallelism);
+            // The preconditioner is close to the inverse: anything else is rounding.
+            if energy < LEAST_ENERGY * fit {
+                break;
+            }
+            let length = (fit / energy) as Real;
             spans.each2(solution, &mut finest.right_side, parallelism, |first, solution, residual| {
                 let (direction, image) = (&direction[first..][..solution.len()], &image[first..][..solution.len()]);
                 for k in 0..solution.len() {

@@ -118,6 +118,11 @@ impl Spans {
         spans.iter().map(|[start, end]| *start as usize..*end as usize)
     }
 
+    /// Visits the cells of all spans, in order.
+    pub fn each_range(&self, mut visit: impl FnMut(Range<usize>)) {
+        self.spans.iter().for_each(|[start, end]| visit(*start as usize..*end as usize));
+    }
+
     /// A pool where there is enough to do for one.
     fn loops(&self, parallelism: Parallelism) -> Parallelism {
         if parallelism.pays(self.cells) { parallelism } else { Parallelism::Serial }

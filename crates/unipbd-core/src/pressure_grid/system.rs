@@ -1,18 +1,27 @@
 //! The linear system of the grid: liquid cells, couplings between cells, and right sides.
 
+use super::flow::Flow;
 use super::lattice::Lattice;
+use super::mixture::Mixture;
 use super::openings::Openings;
+use super::operator::Operator;
+use super::solids::Solids;
 use super::spans::{BLOCK, Spans};
-use super::transfer::{Fields, interpolate, mean};
+use super::surface::{depth_of, ghost};
+use super::transfer::{Fields, mean};
 use super::{held_by, renew};
 use crate::bytes::held;
-use crate::math::{Quad, Real, Vector, larger, smaller};
+use crate::math::{Quad, Real, larger, smaller};
 use crate::parallel::Parallelism;
 
-/// Least distance of the free surface from a cell, as a part of the distance of two cells.
-const NEAREST_SURFACE: Real = 0.1;
 /// Diagonal term that keeps cells without air neighbours regular: 1e-5 of their couplings.
 const HELD: Real = 1e-5;
+/// Cells whose faces are open to fluid by less than this in all are masked: they lie inside bodies.
+const MASKED: Real = 1e-3;
+/// Least depth of a cell in which fluids without a surface prevail, and the filled fraction from which on this holds:
+/// its gaps are no air.
+const LEAST_DEPTH: Real = 0.5;
+const LEAST_FILL: Real = 0.1;
 /// Fraction of the compression by curved paths within a substep that the right side anticipates.
 const CURVATURE: Real = 0.5;
 /// Liquid cells with a lower fill fraction than this are contracted: the cell contains merged spray, not a continuous
@@ -20,9 +29,6 @@ const CURVATURE: Real = 0.5;
 const POROUS: Real = 0.9;
 /// ...if the fill is uniform around the cell: near a free surface the fill of opposite neighbours differs by more.
 const SLANTED: Real = 0.3;
-/// A point gets the full grid correction if at least this fraction of its nodes is next to liquid. It is half at
-/// the free surface, less above it.
-const WHOLLY_FELT: Real = 0.5;
 
 /// Couplings by cell; all are zero where there is no liquid.
 #[derive(Default)]
@@ -43,6 +49,16 @@ pub(super) struct System {
     /// Velocity along x at left faces, and along y at lower ones [m/s].
     along_x: Vec<Real>,
     along_y: Vec<Real>,
+    /// Part of each left and lower face that is open to fluid, between walls and bodies.
+    pub open: [Vec<Real>; 2],
+    /// Density of the heaviest fluid over that at each left and lower face.
+    pub ease: [Vec<Real>; 2],
+    /// 1 less the largest covered part of the faces of each cell.
+    bare: Vec<Real>,
+    /// Cells inside bodies; empty without bodies.
+    masked: Vec<bool>,
+    /// Cells with changed openings since the last substep.
+    touched: Vec<u32>,
     /// Negative divergence of the velocity in each cell: the inflow [m/s].
     pub divergence: Vec<Real>,
     /// Excess fill of each cell [m].
@@ -50,13 +66,15 @@ pub(super) struct System {
     /// Solutions of both systems: their differences are velocity changes [m/s] and displacements [m].
     pub pressure: Vec<Real>,
     pub potential: Vec<Real>,
-    /// At left and lower faces: change of velocity, move, and 1 where there is liquid.
-    faces: [Vec<Quad>; 2],
+    /// At left and lower faces: change of velocity and move, times the open part, the open part, and 1 where
+    /// there is liquid.
+    pub faces: [Vec<Quad>; 2],
 }
 
 impl System {
-    /// Makes all columns anew for a lattice of this many cells.
-    pub fn allocate(&mut self, cells: usize) {
+    /// Makes all columns anew for a lattice with these openings.
+    pub fn allocate(&mut self, openings: &Openings) {
+        let cells = openings.left.len();
         for column in [
             &mut self.depth,
             &mut self.along_x,
@@ -69,6 +87,14 @@ impl System {
             renew(column, cells);
         }
         self.faces.iter_mut().for_each(|faces| renew(faces, cells));
+        self.open = [openings.left.clone(), openings.lower.clone()];
+        let [ease_left, ease_lower] = &mut self.ease;
+        for column in [ease_left, ease_lower, &mut self.bare] {
+            column.clear();
+            column.resize(cells, 1.0);
+        }
+        self.masked.clear();
+        self.touched.clear();
     }
 
     /// Forgets the last solution.
@@ -78,7 +104,13 @@ impl System {
     }
 
     /// Reads the surface from the sums of the particles.
-    pub fn read_surface(&mut self, lattice: &Lattice, openings: &Openings, fields: &Fields, parallelism: Parallelism) {
+    pub fn read_surface(
+        &mut self,
+        lattice: &Lattice,
+        openings: &Openings,
+        (fields, fills): (&Fields, bool),
+        parallelism: Parallelism,
+    ) {
         parallelism.chunks(&mut self.depth, |first, depth| {
             let (centre, _) = fields.centre[first..][..depth.len()].as_chunks::<BLOCK>();
             let (inverse, _) = openings.inverse[first..][..depth.len()].as_chunks::<BLOCK>();
@@ -89,6 +121,14 @@ impl System {
                 *depth = std::array::from_fn(of);
             }
         });
+        if fills {
+            parallelism.update(&mut self.depth, |cell, depth| {
+                let fill = fields.centre[cell][1] * openings.inverse[cell];
+                if fields.filling[cell] > 0.0 && fill > LEAST_FILL {
+                    *depth = larger(*depth, LEAST_DEPTH);
+                }
+            });
+        }
         // Cells around the box are empty, even if particle weights reach them.
         let (stride, cells) = (lattice.stride(), lattice.len());
         let sides = (0..cells).step_by(stride).flat_map(|row| [row, row + lattice.width + 1]);
@@ -98,13 +138,85 @@ impl System {
     }
 
     /// Reads the velocities in and beside the liquid from the sums of the particles.
-    pub fn read_flow(&mut self, fields: &Fields, spans: &Spans, parallelism: Parallelism) {
+    pub fn read_flow(&mut self, fields: &Fields, mixture: &Mixture, spans: &Spans, parallelism: Parallelism) {
         spans.each2(&mut self.along_x, &mut self.along_y, parallelism, |first, along_x, along_y| {
             let (left, lower) = (&fields.left[first..][..along_x.len()], &fields.lower[first..][..along_x.len()]);
             for k in 0..along_x.len() {
                 (along_x[k], along_y[k]) = (mean(left[k]), mean(lower[k]));
             }
         });
+        if mixture.simple {
+            return;
+        }
+        for ((ease, sums), number) in self.ease.iter_mut().zip([&fields.left, &fields.lower]).zip(&fields.number) {
+            spans.each(ease, parallelism, |first, ease| {
+                for (k, ease) in (first..).zip(ease) {
+                    let mass = sums[k][1];
+                    *ease = if mass > 0.0 { number[k] / mass } else { 1.0 };
+                }
+            });
+        }
+    }
+
+    /// Takes the covered parts of faces from the open ones.
+    pub fn cover(&mut self, openings: &Openings, solids: &mut Solids, stride: usize) {
+        for cell in self.touched.drain(..).map(|cell| cell as usize) {
+            (self.open[0][cell], self.open[1][cell]) = (openings.left[cell], openings.lower[cell]);
+            self.bare[cell] = 1.0;
+        }
+        for face in solids.faces_mut() {
+            let (here, back, axis) = (face.cell as usize, face.back(stride), usize::from(face.axis));
+            let of_walls = if axis == 0 { openings.left[here] } else { openings.lower[here] };
+            // Bodies that share a face do not cover more than the whole.
+            face.open = smaller(of_walls * face.part, self.open[axis][here]);
+            self.open[axis][here] -= face.open;
+            for cell in [here, back] {
+                self.bare[cell] = smaller(self.bare[cell], 1.0 - face.part);
+                self.touched.push(cell as u32);
+            }
+        }
+    }
+
+    /// Finds the cells inside bodies from the couplings of the fluid, and couples the cells a body covers as if it were
+    /// fluid of its density: for the preconditioner.
+    pub fn mask(&mut self, solids: &Solids, stride: usize, operator: &Operator, out: &mut Couplings) {
+        self.masked.clear();
+        if !solids.any() {
+            return;
+        }
+        self.masked.resize(self.depth.len(), false);
+        for &cell in &self.touched {
+            let cell = cell as usize;
+            self.masked[cell] = self.depth[cell] >= 0.0 && operator.total[cell] < MASKED;
+        }
+        for solid in &solids.solids {
+            for face in solids.faces_of(solid) {
+                let (here, back) = (face.cell as usize, face.back(stride));
+                let coupling = face.open * solid.lightness;
+                match (self.depth[back] >= 0.0, self.depth[here] >= 0.0) {
+                    (true, true) if face.axis == 0 => out.right[back] += coupling,
+                    (true, true) => out.upper[back] += coupling,
+                    (true, false) => out.air[back] += coupling,
+                    (false, true) => out.air[here] += coupling,
+                    (false, false) => (),
+                }
+            }
+        }
+    }
+
+    /// Sets a column to zero inside bodies.
+    pub fn clear_masked(&self, column: &mut [Real]) {
+        for &cell in &self.touched {
+            if self.masked[cell as usize] {
+                column[cell as usize] = 0.0;
+            }
+        }
+    }
+
+    /// Whether the pressure of a cell is part of the system.
+    #[inline(always)]
+    pub fn counts(&self, cell: usize) -> bool {
+        self.depth[cell] >= 0.0 && !self.masked.get(cell).is_some_and(|&masked| masked)
     }
 
     /// Sets the couplings of the liquid.
@@ -116,7 +228,7 @@ impl System {
         parallelism: Parallelism,
     ) {
         let (stride, depth) = (lattice.stride(), &self.depth);
-        let (left, lower) = (&openings.left, &openings.lower);
+        let ([left, lower], [ease_left, ease_lower]) = (&self.open, &self.ease);
         spans.each3(&mut out.right, &mut out.upper, &mut out.air, parallelism, |first, right, upper, air| {
             for k in 0..right.len() {
                 let cell = first + k;
@@ -124,16 +236,17 @@ impl System {
                 if depth[cell] < 0.0 {
                     continue;
                 }
-                let mut to = |other: usize, open: Real| {
-                    let liquid = depth[other] >= 0.0;
-                    air[k] += if liquid { 0.0 } else { open * ghost(depth[cell], depth[other]) };
-                    if liquid { open } else { 0.0 }
+                let mut to = |other: usize, (open, of_walls, ease): (Real, Real, Real)| {
+                    let (liquid, covered) = (depth[other] >= 0.0, of_walls - open);
+                    air[k] += if liquid { 0.0 } else { open * ease * ghost(depth[cell], depth[other], covered) };
+                    if liquid { open * ease } else { 0.0 }
                 };
-                right[k] = to(cell + 1, left[cell + 1]);
-                upper[k] = to(cell + stride, lower[cell + stride]);
-                to(cell - 1, left[cell]);
-                to(cell - stride, lower[cell]);
-                air[k] += HELD;
+                let of_left = |face: usize| (left[face], openings.left[face], ease_left[face]);
+                let of_lower = |face: usize| (lower[face], openings.lower[face], ease_lower[face]);
+                right[k] = to(cell + 1, of_left(cell + 1));
+                upper[k] = to(cell + stride, of_lower(cell + stride));
+                let behind = to(cell - 1, of_left(cell)) + to(cell - stride, of_lower(cell));
+                air[k] += HELD * (right[k] + upper[k] + behind + 1.0);
             }
         });
     }
@@ -146,22 +259,23 @@ impl System {
         openings: &Openings,
         fields: &Fields,
         (dt, taken_back): (Real, Real),
-        spans: &Spans,
+        (solids, spans): (&Solids, &Spans),
         parallelism: Parallelism,
     ) {
         let (depth, curving) = (&self.depth, CURVATURE * 0.5 * dt / lattice.cell);
+        let (open, bare, masked) = (&self.open, &self.bare, &self.masked);
         let flow = Flow { u: &self.along_x, v: &self.along_y, stride: lattice.stride() };
         spans.each2(&mut self.divergence, &mut self.excess, parallelism, |first, divergence, excess| {
             for k in 0..divergence.len() {
                 let cell = first + k;
                 (divergence[k], excess[k]) = (0.0, 0.0);
-                if depth[cell] < 0.0 {
+                if depth[cell] < 0.0 || masked.get(cell).is_some_and(|&masked| masked) {
                     continue;
                 }
-                divergence[k] = -flow.out_of(cell, openings);
+                divergence[k] = -flow.out_of(cell, open);
                 let mut too_much = mean(fields.centre[cell]);
                 if flow.neighbors(cell).into_iter().all(|other| depth[other] >= 0.0) {
-                    divergence[k] += curving * flow.squeeze(cell);
+                    divergence[k] += curving * bare[cell] * flow.squeeze(cell);
                     let fill = |cell: usize| fields.centre[cell][1] * openings.inverse[cell];
                     let [left, right, lower, upper] = flow.neighbors(cell).map(fill);
                     if (left - right).abs() + (lower - upper).abs() < SLANTED {
@@ -171,158 +285,18 @@ impl System {
                 excess[k] = taken_back * lattice.cell * too_much;
             }
         });
-    }
-
-    /// Computes the differences of both solutions at the faces.
-    pub fn difference(&mut self, lattice: &Lattice, openings: &Openings, spans: &Spans, parallelism: Parallelism) {
-        let (depth, pressure, potential) = (&self.depth, &self.pressure, &self.potential);
-        let open = [&openings.left, &openings.lower];
-        for ((faces, open), back) in self.faces.iter_mut().zip(open).zip([1, lattice.stride()]) {
-            let difference = |k: usize| {
-                let (before, here) = (depth[k - back], depth[k]);
-                let gain = match (before >= 0.0, here >= 0.0) {
-                    _ if open[k] == 0.0 => return None,
-                    (false, false) => return None,
-                    (true, true) => 1.0,
-                    (true, false) => ghost(before, here),
-                    (false, true) => ghost(here, before),
-                };
-                let [of_pressure, of_potential] = [pressure, potential].map(|field| field[k - back] - field[k]);
-                Some(Quad::new(gain * of_pressure, gain * of_potential, 1.0, 0.0))
-            };
-            let inner = 2 * back..lattice.len() - back;
-            // A wall face gets the value of the next face away from the wall.
-            let felt = |k: usize| match inner.contains(&k) {
-                false => None,
-                true if open[k] > 0.0 => difference(k),
-                true if depth[k] >= 0.0 => difference(k + back),
-                true if depth[k - back] >= 0.0 => difference(k - back),
-                true => None,
-            };
-            spans.each(faces, parallelism, |first, faces| {
-                for (k, face) in faces.iter_mut().enumerate() {
-                    *face = felt(first + k).unwrap_or_default();
-                }
-            });
-        }
-    }
-
-    /// The solution as interpolated to the particles.
-    pub fn felt(&self, lattice: &Lattice) -> Felt<'_> {
-        Felt { lattice: *lattice, faces: [&self.faces[0], &self.faces[1]] }
-    }
-
-    /// The pressure at a place, in the unit of the solution [m/s]: air has none, walls that beside them.
-    pub fn pressure_at(&self, lattice: &Lattice, openings: &Openings, x: Vector) -> Real {
-        let place = lattice.place(x);
-        if !lattice.holds(place) {
-            return 0.0;
-        }
-        let (nodes, stride) = (lattice.around(place).centre, lattice.stride());
-        let cells = [nodes.first, nodes.first + 1, nodes.first + stride, nodes.first + stride + 1];
-        let (mut sum, mut weights) = (0.0, 0.0);
-        for (cell, weight) in cells.into_iter().zip(nodes.weights()).filter(|(cell, _)| openings.inverse[*cell] > 0.0) {
-            sum += weight * self.pressure[cell];
-            weights += weight;
-        }
-        if weights > 0.0 { sum / weights } else { 0.0 }
-    }
-
-    /// The closed parts of all faces of the liquid: the middle of the face, the way out of the liquid, and the
-    /// pressure at it, half a cell on from the centre, times the closed part [m/s].
-    pub fn closed_faces(&self, lattice: &Lattice, openings: &Openings, mut visit: impl FnMut(Vector, Vector, Real)) {
-        let (stride, half) = (lattice.stride(), 0.5 * lattice.cell);
-        for cell in (0..lattice.len()).filter(|&cell| self.depth[cell] >= 0.0) {
-            let centre = lattice.corner(cell) + Vector::splat(half);
-            let faces = [
-                (openings.left[cell], cell + 1, Vector::NEG_X),
-                (openings.left[cell + 1], cell - 1, Vector::X),
-                (openings.lower[cell], cell + stride, Vector::NEG_Y),
-                (openings.lower[cell + stride], cell - stride, Vector::Y),
-            ];
-            for (open, behind, outward) in faces.into_iter().filter(|(open, ..)| *open < 1.0) {
-                let liquid = self.depth[behind] >= 0.0;
-                let gain = if liquid { 1.0 } else { ghost(self.depth[cell], self.depth[behind]) };
-                let at_face = self.pressure[cell] + 0.5 * gain * (self.pressure[cell] - self.pressure[behind]);
-                visit(centre + outward * half, outward, (1.0 - open) * at_face);
-            }
-        }
+        let mut divergence = std::mem::take(&mut self.divergence);
+        solids.add_inflow(&mut divergence, lattice.stride(), |cell| self.counts(cell));
+        self.divergence = divergence;
     }
 
     /// Memory held [bytes].
     pub fn memory_bytes(&self) -> usize {
         held_by(&[&self.depth, &self.along_x, &self.along_y, &self.divergence, &self.excess])
-            + held_by(&[&self.pressure, &self.potential])
+            + held_by(&[&self.pressure, &self.potential, &self.bare])
+            + held_by(&[&self.open[0], &self.open[1], &self.ease[0], &self.ease[1]])
+            + held(&self.masked)
+            + held(&self.touched)
             + self.faces.iter().map(held).sum::<usize>()
     }
-}
-
-/// The solution at the faces. It holds the lattice itself, so that loops keep it in registers.
-pub(super) struct Felt<'a> {
-    lattice: Lattice,
-    faces: [&'a [Quad]; 2],
-}
-
-impl Felt<'_> {
-    /// The velocity change [m/s] and the displacement [m] at a point.
-    #[inline(always)]
-    pub fn at(&self, x: Vector) -> (Vector, Vector) {
-        let place = self.lattice.place(x);
-        if !self.lattice.holds(place) {
-            return (Vector::ZERO, Vector::ZERO);
-        }
-        let (stride, around) = (self.lattice.stride(), self.lattice.around(place));
-        let along_x = interpolate(self.faces[0], stride, around.left);
-        let along_y = interpolate(self.faces[1], stride, around.lower);
-        let per = Vector::new(1.0 / larger(along_x.z, WHOLLY_FELT), 1.0 / larger(along_y.z, WHOLLY_FELT));
-        (Vector::new(along_x.x, along_y.x) * per, Vector::new(along_x.y, along_y.y) * per)
-    }
-}
-
-/// Velocities at the faces of cells.
-struct Flow<'a> {
-    u: &'a [Real],
-    v: &'a [Real],
-    stride: usize,
-}
-
-impl Flow<'_> {
-    fn neighbors(&self, cell: usize) -> [usize; 4] {
-        [cell - 1, cell + 1, cell - self.stride, cell + self.stride]
-    }
-
-    /// Outflow of a cell.
-    fn out_of(&self, cell: usize, open: &Openings) -> Real {
-        let (right, upper) = (cell + 1, cell + self.stride);
-        (self.u[right] * open.left[right] - self.u[cell] * open.left[cell])
-            + (self.v[upper] * open.lower[upper] - self.v[cell] * open.lower[cell])
-    }
-
-    /// The trace of the squared velocity gradient, in cell units: the compression by curved paths.
-    fn squeeze(&self, cell: usize) -> Real {
-        let middle =
-            |cell: usize| Vector::new(self.u[cell] + self.u[cell + 1], self.v[cell] + self.v[cell + self.stride]) * 0.5;
-        let [left, right, lower, upper] = self.neighbors(cell).map(middle);
-        let (along_x, along_y) = (right - left, upper - lower);
-        let (ux, vy) = (self.u[cell + 1] - self.u[cell], self.v[cell + self.stride] - self.v[cell]);
-        ux * ux + vy * vy + 0.5 * along_x.y * along_y.x
-    }
-}
-
-/// Distance from a flat free surface, in cells, of a cell with this fill fraction; exact along an axis.
-#[inline(always)]
-fn depth_of(fill: Real) -> Real {
-    let missing = 1.0 - fill;
-    if missing <= 0.0 {
-        1.0
-    } else if fill < 0.5 {
-        (2.0 * fill).sqrt() - 1.0
-    } else {
-        1.0 - (2.0 * missing).sqrt()
-    }
-}
-
-/// Ghost-pressure factor next to air: the pressure is zero at the free surface, not at the centre of the next cell.
-fn ghost(liquid: Real, air: Real) -> Real {
-    1.0 / (liquid / (liquid - air)).clamp(NEAREST_SURFACE, 1.0)
 }

@@ -1,18 +1,18 @@
 //! Transfer from particles to grid nodes, and interpolation from grid nodes to any point.
 
 use super::lattice::{Lattice, Nodes};
-use super::renew;
+use super::mixture::Mixture;
+use super::{held_by, renew};
 use crate::bytes::held;
 use crate::math::{Quad, Real, larger, smaller};
 use crate::parallel::{CHUNK_ROWS, Parallelism};
 use crate::particles::Particles;
+use crate::phase::Phase;
 use std::ops::Range;
 
 /// Rows per task, and the maximum number of tasks: fixed, so that sums do not depend on the number of threads.
 const TASK_ROWS: usize = 16 * CHUNK_ROWS;
 const MOST_TASKS: usize = 32;
-/// Lower density errors than this belong to a free surface, not to a gap.
-const SURFACE: Real = -0.04;
 
 /// Sums of the particles at the nodes of a grid: a value times weights, and the weights.
 pub(super) type Sums = Vec<[Real; 2]>;
@@ -27,12 +27,17 @@ pub(super) struct Transfer {
 /// Sums by cell.
 #[derive(Default)]
 pub(super) struct Fields {
-    /// Velocity along x at left faces.
+    /// Velocity along x at left faces; the weights are masses over that of the heaviest fluid.
     pub left: Sums,
     /// Velocity along y at lower faces.
     pub lower: Sums,
     /// Density error at centres; the weights are the filled fraction of the cell.
     pub centre: Sums,
+    /// Number of particles at left and lower faces; empty where all have one mass.
+    pub number: [Vec<Real>; 2],
+    /// Filled fraction of the cell by fluids that fill their domain, less that by fluids with a surface; empty where
+    /// all have one.
+    pub filling: Vec<Real>,
 }
 
 /// Rows that are spread by one task, and the sums in the cells they reach.
@@ -49,7 +54,13 @@ impl Transfer {
     }
 
     /// Spreads velocities, density errors and areas [m^2] of all dense particles.
-    pub fn gather(&mut self, lattice: &Lattice, particles: &Particles, area: Real, parallelism: Parallelism) {
+    pub fn gather(
+        &mut self,
+        lattice: &Lattice,
+        particles: &Particles,
+        (mixture, area): (&Mixture, Real),
+        parallelism: Parallelism,
+    ) {
         let rows = particles.dense();
         let tasks = rows.div_ceil(TASK_ROWS).clamp(1, MOST_TASKS);
         let per_task = rows.div_ceil(tasks);
@@ -59,12 +70,12 @@ impl Transfer {
         }
         let filled = area / (lattice.cell * lattice.cell);
         if let [alone] = &mut self.tasks[..] {
-            alone.spread(lattice, 0..lattice.len(), particles, filled);
+            alone.spread(lattice, 0..lattice.len(), particles, (mixture, filled));
             return std::mem::swap(&mut alone.fields, &mut self.fields);
         }
         parallelism.each(rows, &mut self.tasks, |_, task| {
             let cells = task.reached(lattice, particles);
-            task.spread(lattice, cells, particles, filled);
+            task.spread(lattice, cells, particles, (mixture, filled));
         });
         let (tasks, fields) = (&self.tasks, &mut self.fields);
         for sums in [&mut fields.left, &mut fields.lower, &mut fields.centre] {
@@ -76,6 +87,9 @@ impl Transfer {
             add_up(tasks, first, lower, |fields| &fields.lower);
             add_up(tasks, first, centre, |fields| &fields.centre);
         });
+        if !mixture.simple {
+            fields.add_up_mixture(tasks, lattice.len(), parallelism);
+        }
     }
 
     /// Memory held [bytes].
@@ -85,22 +99,61 @@ impl Transfer {
 }
 
 /// Adds up the sums of all tasks for the cells from `first` on.
-fn add_up(tasks: &[Task], first: usize, out: &mut [[Real; 2]], of: impl Fn(&Fields) -> &Sums) {
-    out.fill([0.0; 2]);
+fn add_up<T: Default + Copy + Add>(tasks: &[Task], first: usize, out: &mut [T], of: impl Fn(&Fields) -> &[T]) {
+    out.fill(T::default());
     for task in tasks {
         let (start, end) = (task.cells.start.max(first), task.cells.end.min(first + out.len()));
         if start < end {
             let found = &of(&task.fields)[start - task.cells.start..end - task.cells.start];
             for (sum, found) in out[start - first..end - first].iter_mut().zip(found) {
-                *sum = [sum[0] + found[0], sum[1] + found[1]];
+                *sum = sum.plus(*found);
             }
         }
     }
 }
 
+/// What a column of sums holds.
+trait Add {
+    fn plus(self, other: Self) -> Self;
+}
+
+impl Add for Real {
+    fn plus(self, other: Self) -> Self {
+        self + other
+    }
+}
+
+impl Add for [Real; 2] {
+    fn plus(self, other: Self) -> Self {
+        [self[0] + other[0], self[1] + other[1]]
+    }
+}
+
 impl Fields {
+    /// Makes all columns of this many cells, all zero; those of a mixture only where there is one.
+    fn renew(&mut self, cells: usize, mixed: bool) {
+        [&mut self.left, &mut self.lower, &mut self.centre].into_iter().for_each(|sums| renew(sums, cells));
+        let [left, lower] = &mut self.number;
+        let cells = if mixed { cells } else { 0 };
+        [left, lower, &mut self.filling].into_iter().for_each(|column| renew(column, cells));
+    }
+
+    /// Adds up the columns of a mixture.
+    fn add_up_mixture(&mut self, tasks: &[Task], cells: usize, parallelism: Parallelism) {
+        let ([left, lower], filling) = (&mut self.number, &mut self.filling);
+        [&mut *left, &mut *lower, &mut *filling].into_iter().for_each(|column| column.resize(cells, 0.0));
+        parallelism.chunks3(left, lower, filling, |first, left, lower, filling| {
+            add_up(tasks, first, left, |fields| &fields.number[0]);
+            add_up(tasks, first, lower, |fields| &fields.number[1]);
+            add_up(tasks, first, filling, |fields| &fields.filling);
+        });
+    }
+
     fn memory_bytes(&self) -> usize {
-        held(&self.left) + held(&self.lower) + held(&self.centre)
+        held(&self.left)
+            + held(&self.lower)
+            + held(&self.centre)
+            + held_by(&[&self.number[0], &self.number[1], &self.filling])
     }
 }
 
@@ -116,26 +169,77 @@ impl Task {
         if low <= high { lattice.cells_between(low, high) } else { 0..0 }
     }
 
-    fn spread(&mut self, lattice: &Lattice, cells: Range<usize>, particles: &Particles, filled: Real) {
+    fn spread(
+        &mut self,
+        lattice: &Lattice,
+        cells: Range<usize>,
+        particles: &Particles,
+        (mixture, filled): (&Mixture, Real),
+    ) {
+        self.fields.renew(cells.len(), !mixture.simple);
         self.cells = cells;
+        match mixture.simple {
+            true => self.spread_simple(lattice, particles, (mixture, filled)),
+            false => self.spread_mixed(lattice, particles, (mixture, filled)),
+        }
+    }
+
+    /// All rows have one mass and a free surface.
+    fn spread_simple(&mut self, lattice: &Lattice, particles: &Particles, (mixture, filled): (&Mixture, Real)) {
         let (places, velocities) = (&particles.start[self.rows.clone()], &particles.velocity[self.rows.clone()]);
         let errors = &particles.density_error[self.rows.clone()];
         let (fields, first, stride) = (&mut self.fields, self.cells.start, lattice.stride());
-        for sums in [&mut fields.left, &mut fields.lower, &mut fields.centre] {
-            renew(sums, self.cells.len());
-        }
-        let lattice = *lattice;
+        let (lattice, role) = (*lattice, mixture.roles[0]);
         let [left, lower, centre] = [&mut fields.left, &mut fields.lower, &mut fields.centre].map(Vec::as_mut_slice);
         for ((&x, velocity), &error) in places.iter().zip(velocities).zip(errors) {
             let place = lattice.place(x);
             if lattice.holds(place) {
-                let error = if error > SURFACE { error } else { 0.0 };
                 let around = lattice.around(place);
                 add(left, first, stride, around.left, [velocity.x, 1.0]);
                 add(lower, first, stride, around.lower, [velocity.y, 1.0]);
-                add(centre, first, stride, around.centre, [error * filled, filled]);
+                add(centre, first, stride, around.centre, [role.error(error) * filled, filled]);
             }
         }
+    }
+
+    /// Rows of several masses; samples of rigid bodies fill their cells, and bring no velocity.
+    fn spread_mixed(&mut self, lattice: &Lattice, particles: &Particles, (mixture, filled): (&Mixture, Real)) {
+        let (first, stride, lattice) = (self.cells.start, lattice.stride(), *lattice);
+        let Fields { left, lower, centre, number: [number_left, number_lower], filling } = &mut self.fields;
+        for row in self.rows.clone() {
+            let place = lattice.place(particles.start[row]);
+            if !lattice.holds(place) {
+                continue;
+            }
+            let around = lattice.around(place);
+            let (inverse_mass, velocity) = (particles.inverse_mass[row], particles.velocity[row]);
+            let role = mixture.roles[usize::from(particles.material[row])];
+            if particles.phase[row] == Phase::Rigid && inverse_mass == 0.0 {
+                add(centre, first, stride, around.centre, [0.0, filled]);
+                continue;
+            }
+            let mass = match particles.phase[row] {
+                Phase::Rigid => 1.0 / (inverse_mass * mixture.heaviest),
+                _ => role.mass,
+            };
+            let error = role.error(particles.density_error[row]);
+            add(left, first, stride, around.left, [mass * velocity.x, mass]);
+            add(lower, first, stride, around.lower, [mass * velocity.y, mass]);
+            add(centre, first, stride, around.centre, [error * filled, filled]);
+            count(number_left, first, stride, around.left, 1.0);
+            count(number_lower, first, stride, around.lower, 1.0);
+            count(filling, first, stride, around.centre, filled * role.filling);
+        }
+    }
+}
+
+/// Adds a weight to the four nodes around a place.
+#[inline(always)]
+fn count(sums: &mut [Real], first: usize, stride: usize, nodes: Nodes, weight: Real) {
+    let at = nodes.first - first;
+    let parts = nodes.weights();
+    for (node, part) in [at, at + 1, at + stride, at + stride + 1].into_iter().zip(parts) {
+        sums[node] += part * weight;
     }
 }
 

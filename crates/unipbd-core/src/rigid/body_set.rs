@@ -249,6 +249,13 @@ impl Bodies {
         self.pushed[id as usize] = true;
     }
 
+    /// Moves a body [m], [rad] without a change of its velocity.
+    pub fn shift(&mut self, id: u32, linear: Vector64, angular: f64) {
+        let pose = &mut self.poses[id as usize];
+        pose.position += linear;
+        pose.angle += angular;
+    }
+
     /// Applies a force and a torque about the centre of mass to a body over a substep of length `dt`,
     /// and records both as fluid loads. Accepts any kind of body; only dynamic bodies move.
     pub fn load(&mut self, id: u32, force: Vector64, torque: f64, dt: f64) {

@@ -7,8 +7,8 @@ use super::{Emitter, Profile, Scene, SubstepLaw, Substeps};
 pub const BYTES_PER_PARTICLE: u64 = 300;
 /// Rough time per particle and substep on one core [s].
 pub const SECONDS_PER_PARTICLE_AND_SUBSTEP: f64 = 60e-9;
-/// The same with a coarse projection, whose substeps are long: each has a grid to solve and a list to make.
-pub const SECONDS_WITH_COARSE_PROJECTION: f64 = 160e-9;
+/// The same with the pressure grid, whose substeps are long: each has a grid to solve and a list to make.
+pub const SECONDS_WITH_PRESSURE_GRID: f64 = 160e-9;
 
 /// What a scene would cost. Upper bounds where the run decides: throttled emitters emit less, and
 /// gas may be removed before its lifetime is over.
@@ -41,8 +41,8 @@ impl Scene {
             Substeps::Auto => automatic_substeps(self),
         };
         let steps = self.fps * f64::from(substeps);
-        let coarse = self.solver.coarse_projection > 0;
-        let each = if coarse { SECONDS_WITH_COARSE_PROJECTION } else { SECONDS_PER_PARTICLE_AND_SUBSTEP };
+        let grid = self.uses_pressure_grid();
+        let each = if grid { SECONDS_WITH_PRESSURE_GRID } else { SECONDS_PER_PARTICLE_AND_SUBSTEP };
         Estimate {
             particles_at_start: population.start as u64,
             emitted_per_second,
@@ -51,6 +51,11 @@ impl Scene {
             memory_bytes: (population.peak.ceil() as u64).saturating_mul(BYTES_PER_PARTICLE),
             cost_seconds: population.particle_seconds * steps * each,
         }
+    }
+
+    /// Most particles at any time of the run.
+    pub(super) fn most_particles(&self) -> f64 {
+        population(self).peak.ceil()
     }
 
     fn lifetime(&self, material: &str) -> f64 {
@@ -142,7 +147,7 @@ fn changes(scene: &Scene) -> Vec<Change> {
 /// Substeps per frame for the speeds and depths at the start.
 fn automatic_substeps(scene: &Scene) -> u32 {
     let (mut speed, pressure) = (largest_speed(scene), pressure_over_density(scene));
-    if scene.solver.coarse_projection > 0 {
+    if scene.uses_pressure_grid() {
         // Substeps follow the speed alone: about that of a fall through half the depth, once it moves.
         speed = speed.max(pressure.sqrt());
     }

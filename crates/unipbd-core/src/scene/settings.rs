@@ -1,6 +1,6 @@
 use serde::{Deserialize, Serialize};
 
-use super::Scene;
+use super::{PressureGridUse, Scene};
 
 /// How the constraints are solved.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -22,7 +22,7 @@ pub struct SolverSettings {
     /// Kernel radius h in spacings.
     pub kernel_radius: f64,
     /// Where the density constraint is evaluated; left out, `start` where any fluid resists dilation too (gas,
-    /// `surface = "none"`), `predicted` beside bodies and after a coarse projection, else `early`.
+    /// `surface = "none"`), `predicted` beside bodies and with the pressure grid, else `early`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub gradients: Option<GradientPoint>,
     /// Relaxation of the density iteration, omega; left out, what is stable with the kernel radius and `gradients`.
@@ -37,9 +37,13 @@ pub struct SolverSettings {
     /// where nothing moves any more. Left out, 100, and up to three times the layers of what is deep and narrow.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub settle_substeps: Option<u32>,
-    /// Steps of the coarse projection before that of the particles: a grid of cells two spacings wide carries the
-    /// smooth part of the pressure; 0 is off.
-    pub coarse_projection: u32,
+    /// Whether a grid of cells two spacings wide carries the smooth part of the pressure: `"on"`, `"off"`, or
+    /// `"auto"`, where it pays. `check` and `info` say which, and why.
+    pub pressure_grid: PressureGridUse,
+    /// Residual at which the solver of the pressure grid ends, as a part of that at its start.
+    pub pressure_tolerance: f64,
+    /// Most steps of the solver of the pressure grid in a substep.
+    pub pressure_steps: u32,
     /// Whether liquid at rest falls asleep: it is held where it is, at no cost, until something near it moves.
     pub sleep: bool,
 }
@@ -57,7 +61,9 @@ impl Default for SolverSettings {
             relaxation: None,
             shifting: None,
             settle_substeps: None,
-            coarse_projection: 0,
+            pressure_grid: PressureGridUse::default(),
+            pressure_tolerance: 0.01,
+            pressure_steps: 50,
             sleep: false,
         }
     }
@@ -136,7 +142,7 @@ impl Scene {
             GradientPoint::Predicted
         } else if fluids().any(|fluid| fluid.is_two_sided()) {
             GradientPoint::Start
-        } else if self.body.is_empty() && self.solver.coarse_projection == 0 {
+        } else if self.body.is_empty() && !self.uses_pressure_grid() {
             GradientPoint::Early
         } else {
             GradientPoint::Predicted

@@ -4,10 +4,12 @@ use super::Scene;
 
 /// Way per substep, in spacings, that the Courant-Friedrichs-Lewy condition allows.
 pub(crate) const COURANT: f64 = 0.4;
-/// The same where a coarse projection goes before, at a target compression of 1 %: it goes as the root of the target...
-const COARSE_COURANT: f64 = 0.8;
+/// The same with the pressure grid, at a target compression of 1 %: it goes as the root of the target...
+const GRID_COURANT: f64 = 0.8;
+/// ...shorter for fluids that fill their domain: their compression falls with the substeps alone...
+const FILLED_GRID_COURANT: f64 = 0.5;
 /// ...within these limits.
-const COARSE_COURANT_RANGE: [f64; 2] = [0.2, 1.6];
+const GRID_COURANT_RANGE: [f64; 2] = [0.2, 1.6];
 
 /// The law that the solver's choice and the estimate of a scene follow alike.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,10 +29,11 @@ impl SubstepLaw {
     pub fn new(scene: &Scene) -> Self {
         let (spacing, target) = (scene.spacing, scene.solver.target_compression);
         let free = !scene.materials().any(|material| material.phase().is_fluid() && material.is_two_sided());
-        if scene.solver.coarse_projection > 0 {
+        if scene.uses_pressure_grid() {
             // The grid holds the pressure; the particles only what is left of it.
-            let [least, most] = COARSE_COURANT_RANGE;
-            let courant = (COARSE_COURANT * (target / 0.01).sqrt()).clamp(least, most);
+            let [least, most] = GRID_COURANT_RANGE;
+            let courant = if free { GRID_COURANT } else { FILLED_GRID_COURANT };
+            let courant = (courant * (target / 0.01).sqrt()).clamp(least, most);
             return SubstepLaw { spacing, target, courant, alone: false, free, compressibility: 0.0 };
         }
         let compressibility = scene.solver.compressibility(scene.gradients());

@@ -10,14 +10,14 @@ pub enum Stage {
     Emit,
     /// Applies body forces to the velocities and predicts the positions.
     Predict,
-    /// Projects the velocities on a grid, which carries the smooth part of the pressure.
-    PressureGrid,
-    /// Adds the forces of the grid's pressure on the measured walls.
-    GridWallForces,
     /// Predicts the bodies, finds their contacts and solves contacts and joints once.
     Contacts,
     /// Wakes the liquid around bodies that were woken.
     WakeAroundBodies,
+    /// Projects the velocities of fluids and bodies on a grid, which carries the smooth part of the pressure.
+    PressureGrid,
+    /// Adds the forces of the grid's pressure on the measured walls.
+    GridWallForces,
     /// Moves the samples of bodies to the predicted poses.
     PlaceSamples,
     /// Makes the neighbour list valid for the predicted positions.
@@ -143,10 +143,10 @@ impl Plan {
             substep: needed([
                 (Stage::Emit, with.emitters),
                 (Stage::Predict, true),
-                (Stage::PressureGrid, with.pressure_grid),
-                (Stage::GridWallForces, with.pressure_grid && with.measured_walls),
                 (Stage::Contacts, with.bodies),
                 (Stage::WakeAroundBodies, with.bodies && with.sleep),
+                (Stage::PressureGrid, with.pressure_grid),
+                (Stage::GridWallForces, with.pressure_grid && with.measured_walls),
                 (Stage::PlaceSamples, with.samples),
                 (Stage::FindNeighbors, with.neighbors),
                 (Stage::BeginGroups, with.groups),

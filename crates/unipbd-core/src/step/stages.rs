@@ -5,11 +5,13 @@ use super::pipeline::CorrectionStep;
 use super::world::World;
 use super::{SolverError, Stage};
 use crate::constraints::{ConstraintGroup, DensityGroup};
+use crate::coupling::RigidBodies;
 use crate::effects::Advected;
 use crate::math::{Real, wide};
 use crate::neighbors::{Prepared, SearchPositions};
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
+use crate::pressure_grid::Immersed;
 
 /// Speed in spacings per frame beyond which a run has diverged.
 pub(crate) const ABSURD_SPEED: f64 = 1e6;
@@ -33,10 +35,10 @@ impl World {
             Stage::Remove => self.remove(),
             Stage::Emit => self.emit(),
             Stage::Predict => self.predict(),
-            Stage::PressureGrid => self.project_on_grid(),
-            Stage::GridWallForces => self.add_grid_wall_forces(),
             Stage::Contacts => self.predict_bodies(),
             Stage::WakeAroundBodies => self.wake_around_bodies(),
+            Stage::PressureGrid => self.project_on_grid(),
+            Stage::GridWallForces => self.add_grid_wall_forces(),
             Stage::PlaceSamples => self.place_samples(),
             Stage::FindNeighbors => self.find_neighbors(self.parts.search_positions),
             Stage::BeginGroups => self.begin_groups(),
@@ -78,13 +80,16 @@ impl World {
     fn project_on_grid(&mut self) {
         let parts = &mut self.parts;
         let Some(grid) = &mut parts.pressure_grid else { return };
-        grid.project(&mut parts.particles, &parts.walls, self.clock.dt as Real, parts.parallelism);
+        let hinged = parts.rigid.as_ref().map(RigidBodies::hinged).unwrap_or_default();
+        let mut immersed = parts.rigid.as_mut().map(RigidBodies::immersed);
+        let bodies = immersed.as_mut().map(|(bodies, counts)| Immersed { bodies, counts, hinged: &hinged });
+        grid.project(&mut parts.particles, (&parts.walls, bodies), self.clock.dt, parts.parallelism);
     }
 
     fn add_grid_wall_forces(&mut self) {
         let parts = &self.parts;
         let Some(grid) = &parts.pressure_grid else { return };
-        grid.push_walls(&parts.particles, &parts.walls, &mut self.wall_impulses);
+        grid.push_walls(&parts.walls, &mut self.wall_impulses);
     }
 
     fn add_grid_pressure(&mut self) {

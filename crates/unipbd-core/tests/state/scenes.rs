@@ -2,7 +2,7 @@
 
 use unipbd_core::scene::{
     Block, BodyDescription, Disc, Emitter, Environment, Gas, LegacyKernel, LegacySettings, Liquid, PointMotion, Points,
-    Profile, Scene, Sheath, Smoke, SmokeSource, Solid, SolverSettings, Substeps, Tank,
+    PressureGridUse, Profile, Scene, Sheath, Smoke, SmokeSource, Solid, SolverSettings, Substeps, Tank,
 };
 use unipbd_core::{BuildOptions, Solver};
 
@@ -100,9 +100,13 @@ pub fn bodies() -> Scene {
     }
 }
 
-/// The same column with a coarse projection.
-pub fn coarse() -> Scene {
-    let solver = SolverSettings { coarse_projection: 3, substeps: Substeps::Fixed(4), ..SolverSettings::default() };
+/// The same column with the pressure grid.
+pub fn grid() -> Scene {
+    let solver = SolverSettings {
+        pressure_grid: PressureGridUse::On,
+        substeps: Substeps::Fixed(4),
+        ..SolverSettings::default()
+    };
     Scene { solver, ..liquid() }
 }
 
@@ -125,7 +129,7 @@ pub fn all() -> [(&'static str, Scene); 6] {
         ("plume", plume()),
         ("mixed", mixed()),
         ("bodies", bodies()),
-        ("coarse", coarse()),
+        ("grid", grid()),
         ("legacy", legacy()),
     ]
 }

@@ -1,7 +1,9 @@
 //! Random scenes, each made from its seed alone.
 
 use unipbd_core::rng::Rng;
-use unipbd_core::scene::{Block, Gas, Liquid, LiquidSurface, Scene, Slip, SolverSettings, Substeps, Tank};
+use unipbd_core::scene::{
+    Block, Gas, Liquid, LiquidSurface, PressureGridUse, Scene, Slip, SolverSettings, Substeps, Tank,
+};
 
 use super::{Ending, endure};
 use crate::scenes::{body, nozzle};
@@ -111,14 +113,14 @@ pub fn random_scene(seed: u64) -> Scene {
         let face = [0.5 * width * spacing, 0.7 * height * spacing];
         scene.emitter.push(nozzle(&material, face, 3.0 * spacing, 0.3 * frame));
     }
-    if seed.is_multiple_of(2) { with_coarse_projection(scene) } else { scene }
+    if seed.is_multiple_of(2) { with_pressure_grid(scene) } else { scene }
 }
 
-/// The scene with a coarse projection, if that can carry it. Nothing is drawn: all others stay what they were.
-fn with_coarse_projection(scene: Scene) -> Scene {
-    let solver = SolverSettings { coarse_projection: 3, ..scene.solver.clone() };
-    let coarse = Scene { solver, ..scene.clone() };
-    if coarse.validate().0.is_empty() { coarse } else { scene }
+/// The scene with the pressure grid, if that supports it. Nothing is drawn: all others stay what they were.
+fn with_pressure_grid(scene: Scene) -> Scene {
+    let solver = SolverSettings { pressure_grid: PressureGridUse::On, ..scene.solver.clone() };
+    let grid = Scene { solver, ..scene.clone() };
+    if grid.validate().0.is_empty() { grid } else { scene }
 }
 
 /// The speed that a scene can account for [m/s].

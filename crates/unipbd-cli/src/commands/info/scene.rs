@@ -8,6 +8,7 @@ use unipbd_core::observe::Diagnostics;
 use unipbd_core::rigid::{Body, BodyKind};
 use unipbd_core::scene::Scene;
 
+use super::super::check::pressure_grid;
 use super::super::estimate::{emitted, particles as particle_object};
 use super::super::scene::load;
 use crate::args::SceneChanges;
@@ -51,6 +52,7 @@ fn text(loaded: &LoadedScene, simulation: &Simulation) -> String {
     if let Some(axes) = periodic_axes(scene) {
         lines.push(format!("  periodic    {axes}"));
     }
+    lines.push(format!("  grid        {}", pressure_grid(scene)));
     lines.push(format!("  stages      {}", stage_names(&simulation.solver).join(" > ")));
     lines.push(format!("  seed        {}", simulation.solver.seed()));
     lines.push(format!("  sha256      {}", loaded.sha256));
@@ -114,7 +116,7 @@ fn periodic_axes(scene: &Scene) -> Option<String> {
 }
 
 fn object(loaded: &LoadedScene, simulation: &Simulation) -> serde_json::Value {
-    let scene = &loaded.scene;
+    let (scene, grid) = (&loaded.scene, loaded.scene.pressure_grid());
     let diagnostics = simulation.solver.diagnostics();
     let materials: Vec<_> = simulation
         .solver
@@ -154,6 +156,7 @@ fn object(loaded: &LoadedScene, simulation: &Simulation) -> serde_json::Value {
             "obstacle": scene.obstacle.len(),
         },
         "periodic": { "x": scene.domain.periodic_x, "y": scene.domain.periodic_y },
+        "pressure_grid": { "used": grid.used, "reason": grid.reason },
         "stages": stage_names(&simulation.solver),
     })
 }

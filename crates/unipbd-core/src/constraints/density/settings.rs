@@ -26,6 +26,8 @@ pub struct DensitySettings {
     pub farthest_shift: Option<Real>,
     /// Where the fastest goes less far in a substep, all are shifted less [m].
     pub whole_shift: Real,
+    /// Part of each displacement that velocities follow; the rest moves particles alone.
+    pub velocity_share: Real,
     /// Per material.
     pub materials: Vec<DensityMaterial>,
 }
@@ -71,6 +73,9 @@ const FARTHEST_SHIFT: f64 = 0.05;
 /// Where the fastest goes less far in a substep than this, all are shifted in proportion: an arrangement is
 /// strained by the way it goes, however many substeps that takes, and what rests is left alone [spacings].
 const WHOLE_SHIFT: f64 = 0.15;
+/// Where the pressure grid carries the pressure, velocities follow this part of a displacement: what is left to the
+/// particles is disorder. Followed wholly, a drop drawn out loses 2 % of its energy; not at all, a dam break gains 0.7 %.
+const GRID_VELOCITY_SHARE: Real = 0.3;
 /// Density errors at which shifting ends and is whole: at an edge it would spread into the void.
 const SHIFT_GATE: [Real; 2] = [-0.15, -0.05];
 
@@ -95,6 +100,7 @@ impl DensitySettings {
             repulsion: repels.then(|| repulsion_reach(scene.spacing)),
             farthest_shift: shifts.then(|| real(FARTHEST_SHIFT * scene.spacing)),
             whole_shift: real(WHOLE_SHIFT * scene.spacing),
+            velocity_share: if scene.uses_pressure_grid() { GRID_VELOCITY_SHARE } else { 1.0 },
             materials,
         }
     }

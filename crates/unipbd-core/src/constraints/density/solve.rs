@@ -113,14 +113,32 @@ impl<K: Shape> Density<K> {
                 displacements[k] -= at_most(step, farthest);
             }
         });
+        self.share(now, out);
+    }
+
+    /// Lets velocities follow a part of the displacements alone.
+    fn share(&self, now: Substep<'_>, out: &mut Corrections) {
+        let share = self.settings.velocity_share;
+        if share == 1.0 {
+            return;
+        }
+        let rows = now.particles.listed();
+        let (displacements, shifts) = out.both_mut();
+        now.parallelism.chunks2(&mut displacements[..rows], &mut shifts[..rows], |_, displacements, shifts| {
+            for (displacement, shift) in displacements.iter_mut().zip(shifts) {
+                *shift += *displacement * (1.0 - share);
+                *displacement *= share;
+            }
+        });
     }
 
     /// The forces of the same multipliers on the samples of bodies. Run after [`correct`](Self::correct).
     pub(super) fn load_bodies(&self, now: Substep<'_>, out: &mut Corrections) {
         let (sums, volume, phases) = (&self.sums.gradient, self.settings.volume, now.particles.phases());
+        let share = self.settings.velocity_share;
         now.parallelism.update(out.loads_mut(), |i, load| {
             if phases[i] == Phase::Rigid {
-                *load -= sums[i] * volume;
+                *load -= sums[i] * (volume * share);
             }
         });
     }
@@ -132,10 +150,11 @@ impl<K: Shape> Density<K> {
         }
         let positions = self.places.iteration(now).world.gradient;
         let (steps, inverse_masses) = (&self.step, now.particles.inverse_masses());
+        let share = self.settings.velocity_share;
         for (row, &position) in positions.iter().enumerate() {
             if steps[row] != 0.0 && inverse_masses[row] > 0.0 {
                 now.walls.shares(position, &self.coverage, |wall, slope| {
-                    out.wall_loads_mut()[usize::from(wall)] += wide(slope * steps[row]);
+                    out.wall_loads_mut()[usize::from(wall)] += wide(slope * (steps[row] * share));
                 });
             }
         }

@@ -5,7 +5,6 @@
 
 mod bodies;
 mod checker;
-mod coarse;
 mod environment;
 mod finite;
 mod geometry;
@@ -16,6 +15,7 @@ mod motion;
 mod names;
 mod overlap;
 mod placement;
+mod pressure_grid;
 mod regions;
 mod ropes;
 mod settings;
@@ -34,7 +34,7 @@ impl Scene {
         finite::check(&mut checker);
         settings::check(&mut checker);
         legacy::check(&mut checker);
-        coarse::check(&mut checker);
+        pressure_grid::check(&mut checker);
         environment::check(&mut checker);
         materials::check(&mut checker);
         sources::check(&mut checker);

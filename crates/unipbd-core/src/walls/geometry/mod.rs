@@ -7,6 +7,7 @@ use crate::scene::{HalfPlane, Obstacle, Scene, Side, Slip, Tank};
 
 mod behind;
 mod rectangle;
+mod surfaces;
 
 /// Penetration of a point in a wall, and the direction out of it.
 #[derive(Clone, Copy, Debug, PartialEq)]

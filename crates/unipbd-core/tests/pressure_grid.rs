@@ -1,19 +1,19 @@
-//! The coarse projection: deep liquids with the substeps of their speed alone.
+//! The pressure grid: fluids with the substeps of their speed alone.
 
-use unipbd_core::scene::{Block, BodyDescription, Disc, Gas, Liquid, Obstacle, Scene, SolverSettings, Substeps, Tank};
+use unipbd_core::scene::{Block, Disc, Domain, Liquid, Obstacle, PressureGridUse, Scene, SolverSettings, Tank};
 use unipbd_core::{BuildOptions, Solver};
 
 const GRAVITY: f64 = 9.81;
 
-fn coarse() -> SolverSettings {
-    SolverSettings { coarse_projection: 3, ..SolverSettings::default() }
+fn grid() -> SolverSettings {
+    SolverSettings { pressure_grid: PressureGridUse::On, ..SolverSettings::default() }
 }
 
 /// Water of this width and depth in the left of a tank of this width [m], at 10 particles per metre.
 fn pool(water: [f64; 2], tank: f64) -> Scene {
     let tank = Tank { name: "tank".into(), ..Tank::new([0.0, 0.0], [tank, water[1] + 2.0]) };
     Scene {
-        solver: coarse(),
+        solver: grid(),
         liquid: vec![Liquid::new("water", 1000.0)],
         block: vec![Block::new("water", [0.0, 0.0], water)],
         tank: vec![tank],
@@ -118,15 +118,11 @@ fn the_bits_do_not_depend_on_threads_or_on_a_pause() {
 }
 
 #[test]
-fn what_it_does_not_carry_is_refused_at_once() {
-    let scene = Scene {
-        gas: vec![Gas { name: "air".into(), ..Gas::default() }],
-        body: vec![BodyDescription::disc(0.2, [0.5, 3.0])],
-        solver: SolverSettings { sleep: true, substeps: Substeps::Fixed(4), ..coarse() },
-        ..pool([1.0, 1.0], 2.0)
-    };
-    let problems = scene.build(BuildOptions::default()).err().expect("nothing of that is possible").to_string();
-    for word in ["coarse_projection", "gas", "bodies", "sleep"] {
+fn what_it_does_not_support_is_refused_at_once() {
+    let domain = Domain { periodic_x: Some([0.0, 2.0]), ..Domain::default() };
+    let scene = Scene { domain, tank: Vec::new(), ..pool([1.0, 1.0], 2.0) };
+    let problems = scene.build(BuildOptions::default()).err().expect("it is not possible").to_string();
+    for word in ["pressure_grid", "periodic"] {
         assert!(problems.contains(word), "{problems}");
     }
 }

@@ -1,0 +1,33 @@
+//! The flow between cells.
+
+use crate::math::{Real, Vector};
+
+/// Velocities at the faces of cells.
+pub(super) struct Flow<'a> {
+    pub u: &'a [Real],
+    pub v: &'a [Real],
+    pub stride: usize,
+}
+
+impl Flow<'_> {
+    pub fn neighbors(&self, cell: usize) -> [usize; 4] {
+        [cell - 1, cell + 1, cell - self.stride, cell + self.stride]
+    }
+
+    /// Outflow of a cell.
+    pub fn out_of(&self, cell: usize, [left, lower]: &[Vec<Real>; 2]) -> Real {
+        let (right, upper) = (cell + 1, cell + self.stride);
+        (self.u[right] * left[right] - self.u[cell] * left[cell])
+            + (self.v[upper] * lower[upper] - self.v[cell] * lower[cell])
+    }
+
+    /// The trace of the squared velocity gradient, in cell units: the compression by curved paths.
+    pub fn squeeze(&self, cell: usize) -> Real {
+        let middle =
+            |cell: usize| Vector::new(self.u[cell] + self.u[cell + 1], self.v[cell] + self.v[cell + self.stride]) * 0.5;
+        let [left, right, lower, upper] = self.neighbors(cell).map(middle);
+        let (along_x, along_y) = (right - left, upper - lower);
+        let (ux, vy) = (self.u[cell + 1] - self.u[cell], self.v[cell + self.stride] - self.v[cell]);
+        ux * ux + vy * vy + 0.5 * along_x.y * along_y.x
+    }
+}

@@ -1,0 +1,246 @@
+//! Rigid bodies in the pressure system: the parts of faces they cover, and how they answer to pressure.
+//!
+//! A body that covers a part of a face moves with the pressure difference across it, as fluid does, but as a whole
+//! (Batty et al. 2007): its response belongs to the operator, so that light and heavy bodies are equally stable.
+
+use super::chords::Outline;
+use super::lattice::Lattice;
+use crate::bytes::held;
+use crate::math::{Real, Vector64};
+use crate::rigid::{Bodies, InverseMass, Twist};
+
+/// A face covered to more than this part is covered wholly.
+const WHOLE: f64 = 0.97;
+/// Smaller covered parts are left out.
+const LEAST: f64 = 1e-4;
+
+/// A face that a body covers in part.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Covered {
+    /// The cell ahead of the face.
+    pub cell: u32,
+    /// Whether the face is a left one (0) or a lower one (1).
+    pub axis: u8,
+    /// Covered part of the face.
+    pub part: Real,
+    /// The same times the part that is open between the walls.
+    pub open: Real,
+    /// Moment about the centre of mass of a unit force along the axis [m].
+    arm: f64,
+}
+
+/// A body on the grid.
+#[derive(Clone, Debug)]
+pub(super) struct Solid {
+    pub body: u32,
+    /// Its faces.
+    faces: std::ops::Range<usize>,
+    /// Change of velocity by a force and a torque, times the mass of a full cell.
+    response: [[f64; 3]; 3],
+    /// Predicted velocity [m/s], [rad/s].
+    velocity: [f64; 3],
+    /// Mass of a cell of the heaviest fluid over that of a cell of the body; 0 for an immovable one.
+    pub lightness: Real,
+}
+
+/// The bodies that a fluid meets.
+pub(crate) struct Immersed<'a> {
+    pub bodies: &'a mut Bodies,
+    /// Whether a body is among the particles.
+    pub counts: &'a dyn Fn(u32) -> bool,
+    /// Bodies that turn about a fixed hinge, and the way from their centre of mass to it [m].
+    pub hinged: &'a [(u32, Vector64)],
+}
+
+/// All bodies on the grid.
+#[derive(Default)]
+pub(super) struct Solids {
+    pub solids: Vec<Solid>,
+    faces: Vec<Covered>,
+    intervals: Vec<[f64; 2]>,
+}
+
+/// Unit of the responses: the mass of a full cell of the heaviest fluid [kg], and the substep [s].
+#[derive(Clone, Copy)]
+pub(super) struct Units {
+    pub cell_mass: f64,
+    pub dt: f64,
+}
+
+impl Solids {
+    /// Whether any body covers a face.
+    pub fn any(&self) -> bool {
+        !self.faces.is_empty()
+    }
+
+    /// Finds the faces that these bodies cover, and their responses.
+    pub fn find(&mut self, lattice: &Lattice, immersed: &Immersed<'_>, units: Units) {
+        self.solids.clear();
+        self.faces.clear();
+        let Immersed { bodies, counts, hinged } = immersed;
+        let rigid = |&body: &u32| counts(body) && bodies.elasticity(body as usize).is_none();
+        for body in (0..bodies.len() as u32).filter(rigid) {
+            let first = self.faces.len();
+            self.cover(lattice, bodies, body);
+            if self.faces.len() == first {
+                continue;
+            }
+            let (view, response) = (&bodies.views()[body as usize], bodies.response(body));
+            let moved = bodies.displacement_at(body, Vector64::ZERO);
+            let turned = bodies.displacement_at(body, Vector64::X).y - moved.y;
+            let velocity = [moved.x, moved.y, turned].map(|moved| moved / units.dt);
+            let movable = response != InverseMass::default();
+            let area = view.sample_area * view.samples.len() as f64;
+            let lightness = units.cell_mass * area / (view.mass * f64::from(lattice.cell * lattice.cell));
+            self.solids.push(Solid {
+                body,
+                faces: first..self.faces.len(),
+                response: match hinged.iter().find(|(hinged, _)| *hinged == body) {
+                    Some((_, arm)) => about(response, *arm, units.cell_mass),
+                    None => scaled(response, units.cell_mass),
+                },
+                velocity,
+                lightness: if movable { lightness as Real } else { 0.0 },
+            });
+        }
+    }
+
+    /// Lists the faces of one body, by lines of the grid.
+    fn cover(&mut self, lattice: &Lattice, bodies: &Bodies, body: u32) {
+        let pose = bodies.pose(body);
+        let outline = Outline::new(&bodies.views()[body as usize], pose);
+        let cell = f64::from(lattice.cell);
+        let origin = lattice.lowest();
+        let counts = [lattice.width, lattice.height];
+        for axis in [0, 1] {
+            let along = 1 - axis;
+            let [low, high] = outline.bounds.map(|corner| (corner[axis] - origin[axis]) / cell);
+            let lines =
+                low.ceil().max(0.0) as usize..=(high.floor().max(-1.0) as isize).min(counts[axis] as isize) as usize;
+            if high < 0.0 {
+                continue;
+            }
+            for line in lines {
+                outline.cut(axis, origin[axis] + line as f64 * cell, &mut self.intervals);
+                for [from, to] in &self.intervals {
+                    let [from, to] = [from, to].map(|end| (end - origin[along]) / cell);
+                    let cells = from.floor().max(0.0) as usize..(to.ceil().max(0.0) as usize).min(counts[along]);
+                    for at in cells {
+                        let part = to.min(at as f64 + 1.0) - from.max(at as f64);
+                        if part < LEAST {
+                            continue;
+                        }
+                        let (i, j) = if axis == 0 { (line, at) } else { (at, line) };
+                        let middle = origin[along] + (at as f64 + 0.5) * cell - pose.position[along];
+                        self.faces.push(Covered {
+                            cell: ((j + 1) * lattice.stride() + i + 1) as u32,
+                            axis: axis as u8,
+                            part: if part > WHOLE { 1.0 } else { part as Real },
+                            open: 0.0,
+                            arm: if axis == 0 { -middle } else { middle },
+                        });
+                    }
+                }
+            }
+        }
+    }
+
+    /// The faces of all bodies.
+    pub fn faces_mut(&mut self) -> &mut [Covered] {
+        &mut self.faces
+    }
+
+    /// The faces of a body.
+    pub fn faces_of(&self, solid: &Solid) -> &[Covered] {
+        &self.faces[solid.faces.clone()]
+    }
+
+    /// Adds the inflow that the predicted motion of the bodies brings to each cell [m/s].
+    pub fn add_inflow(&self, inflow: &mut [Real], stride: usize, counts: impl Fn(usize) -> bool) {
+        for solid in &self.solids {
+            self.push_through(solid, solid.velocity, -1.0, stride, (&counts, inflow));
+        }
+    }
+
+    /// Adds the outflow of each cell by the response of the bodies to a pressure [m/s].
+    pub fn respond(&self, pressure: &[Real], out: &mut [Real], stride: usize, counts: impl Fn(usize) -> bool) {
+        for solid in self.solids.iter().filter(|solid| solid.lightness > 0.0) {
+            let change = self.change(solid, pressure, stride);
+            self.push_through(solid, change, 1.0, stride, (&counts, out));
+        }
+    }
+
+    /// Sum over the faces of a body of pressure differences times covered parts: a force and a torque.
+    pub fn load(&self, solid: &Solid, pressure: &[Real], stride: usize) -> [f64; 3] {
+        let mut load = [0.0; 3];
+        for face in self.faces_of(solid) {
+            let (here, back) = (face.cell as usize, face.back(stride));
+            let push = f64::from(face.open) * (f64::from(pressure[back]) - f64::from(pressure[here]));
+            load[usize::from(face.axis)] += push;
+            load[2] += push * face.arm;
+        }
+        load
+    }
+
+    /// Change of the velocity of a body by a pressure [m/s], [rad/s].
+    pub fn change(&self, solid: &Solid, pressure: &[Real], stride: usize) -> [f64; 3] {
+        let load = self.load(solid, pressure, stride);
+        solid.response.map(|row| row[0] * load[0] + row[1] * load[1] + row[2] * load[2])
+    }
+
+    /// Adds the flow through the faces of a body that moves at this velocity, times a factor: out of the cell behind a
+    /// face and into the cell ahead.
+    fn push_through(
+        &self,
+        solid: &Solid,
+        velocity: [f64; 3],
+        factor: f64,
+        stride: usize,
+        (counts, out): (&impl Fn(usize) -> bool, &mut [Real]),
+    ) {
+        for face in self.faces_of(solid) {
+            let normal = velocity[usize::from(face.axis)] + velocity[2] * face.arm;
+            let flow = (factor * normal * f64::from(face.open)) as Real;
+            let (here, back) = (face.cell as usize, face.back(stride));
+            if counts(back) {
+                out[back] += flow;
+            }
+            if counts(here) {
+                out[here] -= flow;
+            }
+        }
+    }
+
+    /// Memory held [bytes].
+    pub fn memory_bytes(&self) -> usize {
+        held(&self.solids) + held(&self.faces) + held(&self.intervals)
+    }
+}
+
+impl Covered {
+    /// The cell behind the face.
+    pub fn back(&self, stride: usize) -> usize {
+        self.cell as usize - if self.axis == 0 { 1 } else { stride }
+    }
+}
+
+fn scaled(response: InverseMass, mass: f64) -> [[f64; 3]; 3] {
+    let (linear, angular) = (response.linear * mass, response.angular * mass);
+    [[linear, 0.0, 0.0], [0.0, linear, 0.0], [0.0, 0.0, angular]]
+}
+
+/// The response of a body that turns about a fixed hinge at `arm` from its centre of mass.
+fn about(response: InverseMass, arm: Vector64, mass: f64) -> [[f64; 3]; 3] {
+    if response.linear == 0.0 || response.angular == 0.0 {
+        return [[0.0; 3]; 3];
+    }
+    // The velocity at the hinge is zero: v = omega (arm.y, -arm.x).
+    let way = [arm.y, -arm.x, 1.0];
+    let inertia = arm.length_squared() / response.linear + 1.0 / response.angular;
+    way.map(|a| way.map(|b| a * b * mass / inertia))
+}
+
+/// A force and a torque, or a displacement, as a twist.
+pub(super) fn twist(parts: [f64; 3]) -> Twist {
+    Twist { linear: Vector64::new(parts[0], parts[1]), angular: parts[2] }
+}

@@ -1,0 +1,83 @@
+//! Whether a scene uses the pressure grid.
+
+use super::{BodySolver, Scene, Substeps};
+use serde::{Deserialize, Serialize};
+
+/// Fewer particles fill so few cells that the grid is all surface.
+const LEAST_PARTICLES: f64 = 60.0;
+
+/// Whether a grid carries the smooth part of the pressure.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "lowercase")]
+pub enum PressureGridUse {
+    /// Where it supports the scene and pays.
+    #[default]
+    Auto,
+    /// Always.
+    On,
+    /// Never: the particles alone carry the pressure.
+    Off,
+}
+
+/// The decision about the pressure grid, and its reason.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct PressureGridChoice {
+    /// Whether the scene uses the grid.
+    pub used: bool,
+    /// Why.
+    pub reason: String,
+}
+
+impl PressureGridChoice {
+    fn off(reason: impl Into<String>) -> Self {
+        PressureGridChoice { used: false, reason: reason.into() }
+    }
+}
+
+impl Scene {
+    /// Whether the scene uses the pressure grid, and why.
+    pub fn pressure_grid(&self) -> PressureGridChoice {
+        match self.solver.pressure_grid {
+            PressureGridUse::On => PressureGridChoice { used: true, reason: "solver.pressure_grid is \"on\"".into() },
+            PressureGridUse::Off => PressureGridChoice::off("solver.pressure_grid is \"off\""),
+            PressureGridUse::Auto => self.where_the_grid_pays(),
+        }
+    }
+
+    /// Whether the scene uses the pressure grid.
+    pub fn uses_pressure_grid(&self) -> bool {
+        self.pressure_grid().used
+    }
+
+    fn where_the_grid_pays(&self) -> PressureGridChoice {
+        if let Some((what, _)) = self.pressure_grid_obstacles().first() {
+            return PressureGridChoice::off(format!("it does not support {what}"));
+        }
+        if let Substeps::Fixed(count) = self.solver.substeps {
+            return PressureGridChoice::off(format!("the number of substeps is fixed at {count}"));
+        }
+        if self.body.iter().any(|body| body.solver == BodySolver::ShapeMatching) {
+            return PressureGridChoice::off("bodies with shape matching need the substeps of the particles alone");
+        }
+        let particles = self.most_particles();
+        if particles < LEAST_PARTICLES {
+            return PressureGridChoice::off(format!("{particles} particles are too few for it to pay"));
+        }
+        PressureGridChoice { used: true, reason: "substeps then follow the speed alone".into() }
+    }
+
+    /// The properties of the scene that the pressure grid does not support, and what to do about each.
+    pub(crate) fn pressure_grid_obstacles(&self) -> Vec<(&'static str, &'static str)> {
+        const OFF: &str = "write \"auto\" or \"off\": the particles alone carry the pressure of such a scene";
+        let periodic = self.domain.periodic_x.is_some() || self.domain.periodic_y.is_some();
+        let dry = !self.materials().any(|material| material.phase().is_fluid());
+        let all = [
+            (dry, "a scene without a fluid", OFF),
+            (periodic, "periodic domains", OFF),
+            (self.solver.sleep, "sleep", "leave out solver.sleep"),
+            (self.legacy.changes_density(), "the density constraints of [legacy]", "leave out the table [legacy]"),
+        ];
+        all.into_iter().filter(|(stands, ..)| *stands).map(|(_, what, instead)| (what, instead)).collect()
+    }
+}

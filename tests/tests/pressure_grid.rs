@@ -1,0 +1,367 @@
+//! The pressure grid where several things meet: liquids of several densities, gas, closed tanks, bodies.
+
+use unipbd_core::scene::Scene;
+use unipbd_core::{Phase, Solver};
+use unipbd_tests::{bars, build, mean_of, of_phase, run, scene};
+
+/// A tank of this width and height full of water, with gravity.
+fn water(width: f64, depth: f64, spacing: f64, rest: &str) -> Scene {
+    scene(&format!(
+        r#"
+        spacing = {spacing}
+        [[liquid]]
+        name = "water"
+        [[block]]
+        material = "water"
+        min = [0.0, 0.0]
+        max = [{width}, {depth}]
+        {rest}
+        "#
+    ))
+}
+
+fn energy(solver: &Solver) -> f64 {
+    solver.diagnostics().energy()
+}
+
+/// Largest energy gained in a run, as a part of `scale` [J].
+fn energy_gained(solver: &mut Solver, frames: u64, scale: f64, mut look: impl FnMut(&Solver)) -> f64 {
+    let start = energy(solver);
+    let mut most = 0.0_f64;
+    run(solver, frames, |solver| {
+        most = most.max((energy(solver) - start) / scale);
+        look(solver);
+    });
+    most
+}
+
+#[test]
+fn layers_of_any_ratio_rest_on_one_or_two_substeps() {
+    for (ratio, compression, speed) in [(2.0, 0.002, 0.5), (10.0, 0.002, 1.0), (833.0, 0.004, 2.0)] {
+        let scene = scene(&format!(
+            r#"
+            spacing = 0.02
+            [[liquid]]
+            name = "heavy"
+            [[liquid]]
+            name = "light"
+            density = {}
+            [[block]]
+            material = "heavy"
+            min = [0.0, 0.0]
+            max = [0.64, 1.0]
+            [[block]]
+            material = "light"
+            min = [0.0, 1.0]
+            max = [0.64, 2.0]
+            [[tank]]
+            min = [0.0, 0.0]
+            max = [0.64, 3.0]
+            open = ["top"]
+            "#,
+            1000.0 / ratio
+        ));
+        let mut solver = build(&scene, 2);
+        let (mut substeps, mut errors) = (0, Vec::new());
+        run(&mut solver, 120, |solver| {
+            let diagnostics = solver.diagnostics();
+            substeps = substeps.max(diagnostics.substeps);
+            errors.push(diagnostics.density_error_mean);
+        });
+        let square = mean_of(solver.velocities().iter().map(|v| f64::from(v.length_squared())));
+        bars("two layers, each 50 dx deep", |bars| {
+            bars.at_most(&format!("substeps per frame at {ratio}:1"), f64::from(substeps), 2.0);
+            bars.at_most(&format!("mean C at {ratio}:1"), mean_of(errors), compression);
+            bars.at_most(&format!("root mean square speed at {ratio}:1 [dx/s]"), square.sqrt() / 0.02, speed);
+        });
+    }
+}
+
+#[test]
+fn hot_gas_in_a_closed_box_rests() {
+    let scene = scene(
+        r#"
+        spacing = 0.05
+        [[gas]]
+        name = "air"
+        gravity_factor = 0.5
+        [[block]]
+        material = "air"
+        min = [0.0, 0.0]
+        max = [1.0, 1.0]
+        temperature = 1.0
+        [[tank]]
+        min = [0.0, 0.0]
+        max = [1.0, 1.0]
+        "#,
+    );
+    let mut solver = build(&scene, 1);
+    let (mut speed, mut compression) = (0.0_f64, 0.0_f64);
+    run(&mut solver, 180, |solver| {
+        speed = speed.max(solver.diagnostics().speed_max);
+        compression = compression.max(solver.diagnostics().density_error_max);
+    });
+    bars("uniformly hot gas in a closed box, 3 s", |bars| {
+        bars.at_most("largest speed [dx/s]", speed / 0.05, 1.0);
+        bars.at_most("worst C", compression, 0.01);
+    });
+}
+
+#[test]
+fn a_full_closed_tank_presses_on_its_floor_alone() {
+    let scene = water(2.0, 1.0, 0.05, "[[tank]]\nname = \"t\"\nmin = [0.0, 0.0]\nmax = [2.0, 1.0]");
+    let mut solver = build(&scene, 1);
+    run(&mut solver, 120, |_| ());
+    let weight = 1000.0 * 2.0 * 9.81;
+    let force =
+        |side: &str| solver.wall_forces().into_iter().find(|wall| wall.name == side).expect("it is measured").force;
+    bars("brim-full closed tank: force over the weight of the water", |bars| {
+        bars.within("floor, down", -force("t bottom").y / weight, 0.99, 1.01);
+        bars.within("lid, up", force("t top").y / weight, -0.01, 0.01);
+        bars.within("right side, outwards", force("t right").x / weight, 0.2475, 0.2525);
+    });
+}
+
+#[test]
+fn a_divider_is_pressed_wherever_it_stands_on_the_grid() {
+    for shift in [0.0, 0.013, 0.031, 0.045] {
+        let rest = format!(
+            r#"
+            [[block]]
+            material = "water"
+            min = [1.55, 0.0]
+            max = [2.5, 0.5]
+            [[tank]]
+            min = [0.0, 0.0]
+            max = [2.5, 4.0]
+            [[obstacle]]
+            name = "divider"
+            min = [{}, -0.5]
+            max = [{}, 3.0]
+            "#,
+            1.0 + shift,
+            1.5 + shift
+        );
+        let mut solver = build(&water(1.0, 1.5, 0.05, &rest), 1);
+        run(&mut solver, 90, |_| ());
+        let (mut force, frames) = (0.0, 90);
+        run(&mut solver, frames, |solver| force += solver.wall_forces()[0].force.x / frames as f64);
+        let (left, right) = (1.5 / (1.0 + shift), 0.95 * 0.5 / (1.0 - shift));
+        let exact = 0.5 * 1000.0 * 9.81 * (left * left - right * right);
+        bars("divider between two depths: force over that of the pressures", |bars| {
+            bars.within(&format!("shifted by {shift} m"), force / exact, 0.98, 1.02);
+        });
+    }
+}
+
+#[test]
+fn a_submerged_body_is_lifted_by_the_weight_of_its_water() {
+    for (shift, angle) in [(0.0, 0.0), (0.013, 0.0), (0.031, 20.0), (0.045, 45.0)] {
+        let rest = format!(
+            r#"
+            [[tank]]
+            min = [0.0, 0.0]
+            max = [2.0, 3.0]
+            [[body]]
+            name = "block"
+            kind = "static"
+            size = [0.6, 0.4]
+            position = [{}, {}]
+            angle_deg = {angle}
+            "#,
+            1.0 + shift,
+            0.7 + shift
+        );
+        let mut solver = build(&water(2.0, 1.5, 0.05, &rest), 1);
+        run(&mut solver, 60, |_| ());
+        let (mut force, frames) = (0.0, 60);
+        run(&mut solver, frames, |solver| force += solver.bodies()[0].fluid_force.y / frames as f64);
+        let lift = 1000.0 * 9.81 * 0.6 * 0.4;
+        bars("submerged body: lift over the weight of the water it displaces", |bars| {
+            bars.within(&format!("shifted by {shift} m, turned by {angle} degrees"), force / lift, 0.97, 1.03);
+        });
+    }
+}
+
+/// A piston as wide as the tank, dropped on water.
+fn piston(mass: f64) -> Scene {
+    let rest = format!(
+        r#"
+        [[tank]]
+        min = [0.0, 0.0]
+        max = [0.8, 6.0]
+        [[body]]
+        name = "piston"
+        size = [0.8, 0.2]
+        position = [0.4, 0.8]
+        mass = {mass}
+        friction = 0.0
+        rotation = "locked"
+        "#
+    );
+    water(0.8, 0.4, 0.05, &rest)
+}
+
+#[test]
+fn a_piston_dropped_on_water_stops() {
+    for mass in [256.0, 1600.0, 6400.0] {
+        let mut solver = build(&piston(mass), 1);
+        let drop = 0.3;
+        let (mut landed, mut lowest, mut rebound) = (false, f64::INFINITY, 0.0_f64);
+        let gain = energy_gained(&mut solver, 120, mass * 9.81 * drop, |solver| {
+            let y = solver.bodies()[0].position.y;
+            landed |= y < 0.53;
+            lowest = lowest.min(y);
+            rebound = rebound.max(if landed { y - lowest } else { 0.0 });
+        });
+        bars("piston dropped on water", |bars| {
+            bars.at_most(&format!("energy gained over that of the drop, {mass} kg"), gain, 0.0);
+            bars.at_most(&format!("rebound over the drop, {mass} kg"), rebound / drop, 0.02);
+        });
+    }
+}
+
+#[test]
+fn falling_water_does_not_rebound() {
+    let scene = scene(
+        r#"
+        spacing = 0.05
+        [[liquid]]
+        name = "water"
+        [[block]]
+        material = "water"
+        min = [0.0, 0.5]
+        max = [0.8, 0.9]
+        [[tank]]
+        min = [0.0, 0.0]
+        max = [0.8, 3.0]
+        "#,
+    );
+    let mut solver = build(&scene, 1);
+    let height = |solver: &Solver| mean_of(solver.positions().iter().map(|x| f64::from(x.y)));
+    let mass = 1000.0 * 0.8 * 0.4;
+    let (mut lowest, mut rebound) = (f64::INFINITY, 0.0_f64);
+    let gain = energy_gained(&mut solver, 120, mass * 9.81 * 0.5, |solver| {
+        lowest = lowest.min(height(solver));
+        rebound = rebound.max(height(solver) - lowest);
+    });
+    bars("a slab of water as wide as its tank falls 0.5 m", |bars| {
+        bars.at_most("energy gained over that of the fall", gain, 0.0);
+        bars.at_most("rebound over the fall", rebound / 0.5, 0.1);
+    });
+}
+
+#[test]
+fn floats_lie_at_their_draft() {
+    for (ratio, locked) in [(0.25, true), (0.5, true), (0.75, true), (0.5, false)] {
+        let (size, dx) = (0.4, 0.025);
+        let rest = format!(
+            r#"
+            [[tank]]
+            min = [0.0, 0.0]
+            max = [1.6, 2.0]
+            [[body]]
+            name = "float"
+            size = [{size}, {size}]
+            position = [0.8, {}]
+            density = {}
+            {}
+            "#,
+            0.8 + size * (0.5 - ratio),
+            1000.0 * ratio,
+            if locked { "rotation = \"locked\"" } else { "" }
+        );
+        let mut solver = build(&water(1.6, 0.8, dx, &rest), 2);
+        run(&mut solver, 180, |_| ());
+        let (mut place, mut square, mut force, frames) = (0.0, 0.0, 0.0, 120);
+        run(&mut solver, frames, |solver| {
+            let body = &solver.bodies()[0];
+            place += body.position.y / frames as f64;
+            square += body.velocity.length_squared() / frames as f64;
+            force += body.fluid_force.y / frames as f64;
+        });
+        let volume = mean_of(solver.positions().iter().map(|_| 1.0)) * of_phase(&solver, Phase::Liquid).count() as f64;
+        let level = (volume * dx * dx + ratio * size * size) / 1.6;
+        let draft = level - (place - 0.5 * size);
+        let weight = 1000.0 * ratio * size * size * 9.81;
+        bars("float of 16 dx", |bars| {
+            let of = |what: &str| format!("{what}, density ratio {ratio}");
+            bars.within(&of("draft off [dx]"), (draft - ratio * size) / dx, -0.5, 0.5);
+            bars.within(&of("force over weight"), force / weight, 0.99, 1.01);
+            bars.at_most(&of("speed over sqrt(g b)"), (square / (9.81 * size)).sqrt(), 0.03);
+        });
+    }
+}
+
+/// A lock exchange of two fluids, from the file.
+fn lock_exchange(kinds: &str, spacing: f64) -> Scene {
+    scene(&format!(
+        r#"
+        spacing = {spacing}
+        fps = 30
+        {kinds}
+        [[block]]
+        material = "heavy"
+        min = [0.0, 0.0]
+        max = [4.0, 1.0]
+        jitter = 0.2
+        [[block]]
+        material = "light"
+        min = [4.0, 0.0]
+        max = [8.0, 1.0]
+        jitter = 0.2
+        [[tank]]
+        min = [0.0, 0.0]
+        max = [8.0, 1.0]
+        friction = 0.0
+        "#
+    ))
+}
+
+#[test]
+fn both_fronts_of_a_lock_exchange_run_at_half_of_the_wave_speed() {
+    let kind =
+        |name: &str, density: f64| format!("[[liquid]]\nname = \"{name}\"\ndensity = {density}\nsurface = \"none\"\n");
+    let spacing = 0.05;
+    let mut solver = build(&lock_exchange(&(kind("heavy", 1000.0) + &kind("light", 900.0)), spacing), 2);
+    let mut fronts: Vec<(f64, [f64; 2])> = Vec::new();
+    run(&mut solver, 210, |solver| {
+        let rows = 0..solver.positions().len();
+        let place = |row: usize| (f64::from(solver.positions()[row].x), f64::from(solver.positions()[row].y));
+        let is_heavy = |row: &usize| solver.material_indices()[*row] == 0;
+        let heavy = rows.clone().filter(is_heavy).map(place).filter(|(_, y)| *y < 2.0 * spacing);
+        let light = rows.filter(|row| !is_heavy(row)).map(place).filter(|(_, y)| *y > 1.0 - 2.0 * spacing);
+        let right = heavy.map(|(x, _)| x).fold(f64::NEG_INFINITY, f64::max);
+        let left = light.map(|(x, _)| x).fold(f64::INFINITY, f64::min);
+        fronts.push((solver.time(), [right - 4.0, 4.0 - left]));
+    });
+    let speed = |which: usize| {
+        let at = |way: f64| fronts.iter().find(|(_, ways)| ways[which] > way).map_or(f64::INFINITY, |(time, _)| *time);
+        1.6 / (at(2.6) - at(1.0))
+    };
+    let scale = (9.81 * 0.1 * 1.0_f64).sqrt();
+    bars("lock exchange, depth 20 dx, densities 1000 and 900", |bars| {
+        bars.within("speed of the heavy front over sqrt(g' H)", speed(0) / scale, 0.44, 0.52);
+        bars.within("speed of the light front over sqrt(g' H)", speed(1) / scale, 0.44, 0.52);
+    });
+}
+
+#[test]
+fn gas_liquid_and_bodies_give_the_same_bits_on_any_number_of_threads_and_after_a_pause() {
+    let kinds = "[[liquid]]\nname = \"heavy\"\n[[gas]]\nname = \"light\"\ndensity = 1.2\n";
+    let body = r#"
+        [[body]]
+        name = "disc"
+        radius = 0.2
+        position = [2.0, 0.5]
+        density = 500.0
+        "#;
+    let scene = lock_exchange(&(kinds.to_owned() + body), 0.04);
+    let (mut one, mut two) = (build(&scene, 1), build(&scene, 2));
+    run(&mut one, 20, |_| ());
+    run(&mut two, 10, |_| ());
+    let mut three = build(&scene, 3);
+    three.restore(&two.save()).expect("it is a state of this scene");
+    run(&mut three, 10, |_| ());
+    assert_eq!(one.state_hash(), three.state_hash());
+}
