@@ -11,6 +11,8 @@ use crate::rigid::{Bodies, InverseMass, Twist};
 
 /// A face covered to more than this part is covered wholly.
 const WHOLE: f64 = 0.97;
+/// Lines per cell at which an outline is cut.
+const LINES: usize = 4;
 /// Smaller covered parts are left out.
 const LEAST: f64 = 1e-4;
 
@@ -58,6 +60,8 @@ pub(super) struct Solids {
     pub solids: Vec<Solid>,
     faces: Vec<Covered>,
     intervals: Vec<[f64; 2]>,
+    /// Covered parts of the faces of one row.
+    parts: Vec<f64>,
 }
 
 /// Unit of the responses: the mass of a full cell of the heaviest fluid [kg], and the substep [s].
@@ -105,41 +109,41 @@ impl Solids {
         }
     }
 
-    /// Lists the faces of one body, by lines of the grid.
+    /// Lists the faces of one body. The part of a face is that of the cell-wide box around it, so that the force on a
+    /// body changes continuously with its place: lines along the direction of the face cut the outline.
     fn cover(&mut self, lattice: &Lattice, bodies: &Bodies, body: u32) {
         let pose = bodies.pose(body);
         let outline = Outline::new(&bodies.views()[body as usize], pose);
-        let cell = f64::from(lattice.cell);
-        let origin = lattice.lowest();
+        let (cell, origin) = (f64::from(lattice.cell), lattice.lowest());
         let counts = [lattice.width, lattice.height];
         for axis in [0, 1] {
-            let along = 1 - axis;
-            let [low, high] = outline.bounds.map(|corner| (corner[axis] - origin[axis]) / cell);
-            let lines =
-                low.ceil().max(0.0) as usize..=(high.floor().max(-1.0) as isize).min(counts[axis] as isize) as usize;
-            if high < 0.0 {
-                continue;
-            }
-            for line in lines {
-                outline.cut(axis, origin[axis] + line as f64 * cell, &mut self.intervals);
-                for [from, to] in &self.intervals {
-                    let [from, to] = [from, to].map(|end| (end - origin[along]) / cell);
-                    let cells = from.floor().max(0.0) as usize..(to.ceil().max(0.0) as usize).min(counts[along]);
-                    for at in cells {
-                        let part = to.min(at as f64 + 1.0) - from.max(at as f64);
-                        if part < LEAST {
-                            continue;
+            let across = 1 - axis;
+            let [low, high] = outline.bounds.map(|corner| (corner - origin) / cell);
+            let rows = within(low[across].floor(), high[across].ceil(), counts[across]);
+            let faces = within((low[axis] + 0.5).floor(), (high[axis] + 0.5).floor() + 1.0, counts[axis] + 1);
+            for row in rows {
+                self.parts.clear();
+                self.parts.resize(faces.len(), 0.0);
+                for line in 0..LINES {
+                    let place = row as f64 + (line as f64 + 0.5) / LINES as f64;
+                    outline.cut(across, origin[across] + place * cell, &mut self.intervals);
+                    for [from, to] in &self.intervals {
+                        let [from, to] = [from, to].map(|end| (end - origin[axis]) / cell + 0.5);
+                        for (face, part) in faces.clone().zip(&mut self.parts) {
+                            *part += (to.min(face as f64 + 1.0) - from.max(face as f64)).max(0.0) / LINES as f64;
                         }
-                        let (i, j) = if axis == 0 { (line, at) } else { (at, line) };
-                        let middle = origin[along] + (at as f64 + 0.5) * cell - pose.position[along];
-                        self.faces.push(Covered {
-                            cell: ((j + 1) * lattice.stride() + i + 1) as u32,
-                            axis: axis as u8,
-                            part: if part > WHOLE { 1.0 } else { part as Real },
-                            open: 0.0,
-                            arm: if axis == 0 { -middle } else { middle },
-                        });
                     }
+                }
+                let middle = origin[across] + (row as f64 + 0.5) * cell - pose.position[across];
+                for (face, &part) in faces.clone().zip(&self.parts).filter(|(_, part)| **part > LEAST) {
+                    let (i, j) = if axis == 0 { (face, row) } else { (row, face) };
+                    self.faces.push(Covered {
+                        cell: ((j + 1) * lattice.stride() + i + 1) as u32,
+                        axis: axis as u8,
+                        part: if part > WHOLE { 1.0 } else { part as Real },
+                        open: 0.0,
+                        arm: if axis == 0 { -middle } else { middle },
+                    });
                 }
             }
         }
@@ -213,7 +217,7 @@ impl Solids {
 
     /// Memory held [bytes].
     pub fn memory_bytes(&self) -> usize {
-        held(&self.solids) + held(&self.faces) + held(&self.intervals)
+        held(&self.solids) + held(&self.faces) + held(&self.intervals) + held(&self.parts)
     }
 }
 
@@ -222,6 +226,12 @@ impl Covered {
     pub fn back(&self, stride: usize) -> usize {
         self.cell as usize - if self.axis == 0 { 1 } else { stride }
     }
+}
+
+/// The whole numbers from `low` up to `high`, between 0 and `most`.
+fn within(low: f64, high: f64, most: usize) -> std::ops::Range<usize> {
+    let number = |at: f64| at.clamp(0.0, most as f64) as usize;
+    number(low)..number(high)
 }
 
 fn scaled(response: InverseMass, mass: f64) -> [[f64; 3]; 3] {

@@ -27,6 +27,8 @@ const CURVATURE: Real = 0.5;
 /// Liquid cells with a lower fill fraction than this are contracted: the cell contains merged spray, not a continuous
 /// liquid...
 const POROUS: Real = 0.9;
+/// ...by this part of what is missing in each substep...
+const POROUS_RELAXATION: Real = 0.06;
 /// ...if the fill is uniform around the cell: near a free surface the fill of opposite neighbours differs by more.
 const SLANTED: Real = 0.3;
 
@@ -273,16 +275,15 @@ impl System {
                     continue;
                 }
                 divergence[k] = -flow.out_of(cell, open);
-                let mut too_much = mean(fields.centre[cell]);
+                excess[k] = taken_back * lattice.cell * mean(fields.centre[cell]);
                 if flow.neighbors(cell).into_iter().all(|other| depth[other] >= 0.0) {
                     divergence[k] += curving * bare[cell] * flow.squeeze(cell);
                     let fill = |cell: usize| fields.centre[cell][1] * openings.inverse[cell];
                     let [left, right, lower, upper] = flow.neighbors(cell).map(fill);
                     if (left - right).abs() + (lower - upper).abs() < SLANTED {
-                        too_much += smaller(fill(cell) - POROUS, 0.0);
+                        excess[k] += POROUS_RELAXATION * lattice.cell * smaller(fill(cell) - POROUS, 0.0);
                     }
                 }
-                excess[k] = taken_back * lattice.cell * too_much;
             }
         });
         let mut divergence = std::mem::take(&mut self.divergence);

@@ -60,6 +60,9 @@ impl Scene {
         if self.body.iter().any(|body| body.solver == BodySolver::ShapeMatching) {
             return PressureGridChoice::off("bodies with shape matching need the substeps of the particles alone");
         }
+        if !self.joint.is_empty() {
+            return PressureGridChoice::off("bodies on joints turn too slowly with it");
+        }
         let particles = self.most_particles();
         if particles < LEAST_PARTICLES {
             return PressureGridChoice::off(format!("{particles} particles are too few for it to pay"));
