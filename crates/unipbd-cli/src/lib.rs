@@ -12,6 +12,7 @@ mod report;
 pub mod scene_file;
 pub mod simulation;
 pub mod snapshot;
+pub mod threads;
 
 use std::ffi::OsString;
 

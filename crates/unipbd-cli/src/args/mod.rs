@@ -111,7 +111,7 @@ pub struct CheckArgs {
     #[command(flatten)]
     pub changes: SceneChanges,
     /// Threads of the run that is estimated [default: all]
-    #[arg(long, value_name = "N", help_heading = "Running", env = "UNIPBD_THREADS", hide_env_values = true, value_parser = run::thread_count)]
+    #[arg(long, value_name = "N", help_heading = "Running", allow_negative_numbers = true, value_parser = run::thread_count)]
     pub threads: Option<usize>,
 }
 
@@ -132,7 +132,7 @@ pub struct ExpectArgs {
     #[command(flatten)]
     pub changes: SceneChanges,
     /// Threads to use [default: all]; never changes results
-    #[arg(long, value_name = "N", help_heading = "Running", env = "UNIPBD_THREADS", hide_env_values = true, value_parser = run::thread_count)]
+    #[arg(long, value_name = "N", help_heading = "Running", allow_negative_numbers = true, value_parser = run::thread_count)]
     pub threads: Option<usize>,
 }
 

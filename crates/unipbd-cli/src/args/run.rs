@@ -78,7 +78,7 @@ pub struct RunArgs {
     #[command(flatten)]
     pub changes: SceneChanges,
     /// Threads to use [default: all]; never changes results
-    #[arg(long, value_name = "N", help_heading = "Running", env = "UNIPBD_THREADS", hide_env_values = true, allow_negative_numbers = true, value_parser = thread_count)]
+    #[arg(long, value_name = "N", help_heading = "Running", allow_negative_numbers = true, value_parser = thread_count)]
     pub threads: Option<usize>,
     /// Stop after the first frame in which this holds, with exit code 5; may be repeated
     ///
@@ -124,10 +124,7 @@ pub struct LogArgs {
 }
 
 pub(super) fn thread_count(text: &str) -> Result<usize, String> {
-    match text.trim().parse() {
-        Ok(count @ 1..=4096) => Ok(count),
-        _ => Err("expected a whole number from 1 to 4096".into()),
-    }
+    unipbd_core::step::thread_count(text)
 }
 
 pub(super) fn positive(text: &str) -> Result<f64, String> {

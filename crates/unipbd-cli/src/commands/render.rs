@@ -2,7 +2,7 @@
 
 use unipbd_core::BuildOptions;
 
-use super::scene::load;
+use super::scene::{load, threads};
 use crate::args::{RenderArgs, is_log};
 use crate::exit::{Exit, Failure};
 use crate::interrupt;
@@ -118,7 +118,7 @@ impl Source {
             return Ok(Source::Log(Box::new(Log::open(&arguments.source)?)));
         }
         let loaded = load(&arguments.source, &arguments.changes)?;
-        let options = BuildOptions { threads: arguments.threads, seed: None };
+        let options = BuildOptions { threads: threads(arguments.threads)?, seed: None };
         Ok(Source::Scene { loaded: Box::new(loaded), options, fields: fields_for(arguments.look.color) })
     }
 

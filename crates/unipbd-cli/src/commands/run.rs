@@ -4,7 +4,7 @@ use unipbd_core::observe::{Diagnostics, Event};
 use unipbd_core::{BuildOptions, SolverError};
 
 use super::recording::Recording;
-use super::scene::load;
+use super::scene::{load, threads};
 use crate::args::{RunArgs, StopCondition};
 use crate::exit::{Exit, Failure};
 use crate::expect::Watch;
@@ -20,7 +20,7 @@ pub(super) fn run(arguments: &RunArgs, console: Console) -> Result<Exit, Failure
     let loaded = load(&arguments.scene, &arguments.changes)?;
     interrupt::listen();
     let statistics = Statistics::start();
-    let options = BuildOptions { threads: arguments.threads, seed: None };
+    let options = BuildOptions { threads: threads(arguments.threads)?, seed: None };
     let simulation = Simulation::new(&loaded.scene, options);
     announce(&simulation, &loaded, console);
     let recording = destination

@@ -21,5 +21,6 @@ pub use pipeline::Stage;
 pub use solver::{FrameReport, Solver};
 pub(crate) use stages::ABSURD_SPEED;
 pub use substeps::{Choice, Demand, SubstepRule};
+pub use threads::{MOST_THREADS, thread_count};
 pub use view::SubstepView;
 pub(crate) use world::{Clock, Parts, Population};

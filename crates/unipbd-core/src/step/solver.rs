@@ -128,7 +128,7 @@ impl Solver {
 
     pub(crate) fn on_threads<T: Send>(&mut self, work: impl FnOnce(&mut World) -> T + Send) -> T {
         let world = &mut self.world;
-        self.threads.run(world.parts.particles.len(), |parallelism| {
+        self.threads.run(world.rows_to_share(), |parallelism| {
             world.parts.parallelism = parallelism;
             work(world)
         })
@@ -136,6 +136,6 @@ impl Solver {
 
     /// Read-only access: the loops of `work` run on the same threads as the last step.
     pub(crate) fn look_on_threads<T: Send>(&self, work: impl FnOnce(&World) -> T + Send) -> T {
-        self.threads.run(self.world.parts.particles.len(), |_| work(&self.world))
+        self.threads.run(self.world.rows_to_share(), |_| work(&self.world))
     }
 }

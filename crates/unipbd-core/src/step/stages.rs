@@ -99,6 +99,7 @@ impl World {
     fn predict_bodies(&mut self) {
         let parts = &mut self.parts;
         let Some(rigid) = &mut parts.rigid else { return };
+        rigid.contacts.run_on(parts.parallelism);
         rigid.predict(self.clock.dt, self.clock.time, wide(parts.gravity));
         rigid.iterate_contacts();
     }

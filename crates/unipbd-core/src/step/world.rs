@@ -22,6 +22,9 @@ use crate::sleep::LiquidSleep;
 use crate::sources::{EmitterSystem, RemovalRules};
 use crate::walls::Walls;
 
+/// Contacts of a body in a dense heap: six neighbours, each contact shared by two bodies.
+const CONTACTS_PER_BODY: usize = 3;
+
 /// The parts of a scene that the loop works on.
 pub(crate) struct Parts {
     pub particles: Particles,
@@ -252,6 +255,12 @@ impl World {
         let start = self.clock.frame as f64 * self.parts.frame_time;
         self.clock.time = start + f64::from(self.clock.done) * self.clock.dt;
         self.clock.done < self.clock.substeps
+    }
+
+    /// Rows of the longest loop: particles, or contacts of bodies, of which each body has a few.
+    pub fn rows_to_share(&self) -> usize {
+        let bodies = self.parts.rigid.as_ref().map_or(0, |rigid| rigid.bodies.len());
+        self.parts.particles.len().max(CONTACTS_PER_BODY * bodies)
     }
 
     /// The stages of the substep.

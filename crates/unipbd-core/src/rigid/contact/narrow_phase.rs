@@ -9,6 +9,7 @@ use super::manifold::Contact;
 use super::pair_contacts::PairContacts;
 use super::pairs::{Pairs, Span};
 use super::pieces::Pieces;
+use crate::parallel::Parallelism;
 use crate::rigid::Bodies;
 use crate::rigid::Wall;
 use rayon::prelude::*;
@@ -30,6 +31,9 @@ pub(super) struct NarrowPhase {
     /// Contacts found by each task of the narrow phase.
     #[serde(skip)]
     tasks: Vec<ContactSet>,
+    /// Where the search may run: set by the run, never saved.
+    #[serde(skip)]
+    pub parallelism: Parallelism,
 }
 
 impl NarrowPhase {
@@ -114,7 +118,7 @@ impl NarrowPhase {
         let (pieces, pairs, last, frozen) = (&self.pieces, &self.pairs, &self.found, &self.frozen);
         let search = PairContacts { pieces, pairs, bodies, moment, last, frozen };
         let active = &pairs.active;
-        if active.len() < PARALLEL_FROM || rayon::current_num_threads() == 1 {
+        if active.len() < PARALLEL_FROM || self.parallelism == Parallelism::Serial {
             active.iter().for_each(|pair| search.pair(pair.index, &mut coming));
         } else {
             tasks.resize_with(tasks.len().max(active.len().div_ceil(CHUNK)), ContactSet::default);
