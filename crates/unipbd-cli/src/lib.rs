@@ -31,6 +31,9 @@ pub fn main_with_args(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     match parsed {
         Ok(parsed) => {
             let console = report::Console::new(&parsed.output);
+            if let Err(message) = unipbd_core::simd::wanted() {
+                return report(&console, &exit::Failure::usage(message));
+            }
             commands::execute(&parsed.command, console).unwrap_or_else(|failure| report(&console, &failure))
         }
         Err(error) => {

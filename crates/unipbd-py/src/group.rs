@@ -4,10 +4,12 @@ use std::sync::{Arc, Mutex, PoisonError};
 
 use numpy::{PyArray2, PyReadonlyArray2};
 use pyo3::PyTraverseError;
+use pyo3::exceptions::PyValueError;
 use pyo3::gc::PyVisit;
 use pyo3::prelude::*;
 use unipbd_core::Vector;
 use unipbd_core::constraints::{ConstraintGroup, Corrections, Needs, Substep};
+use unipbd_core::math::Vector64;
 
 use crate::arrays;
 use crate::particles::{Particles, checked};
@@ -64,6 +66,8 @@ pub struct PythonGroup {
     pub name: String,
     pub project: Callable,
     pub failure: Failure,
+    /// From this speed on a run counts as diverged [m/s].
+    pub speed_limit: f64,
 }
 
 /// One iteration as a Python group sees it.
@@ -111,6 +115,13 @@ impl PythonGroup {
         let wanted: PyReadonlyArray2<'_, f64> = wanted.extract(py)?;
         let particles = view.as_super().get();
         let steps = checked(&arrays::rows(&wanted), particles.count())?;
+        let limit = self.speed_limit * particles.dt;
+        if let Some(row) = steps.iter().position(|step| step.length() >= limit) {
+            let (name, Vector64 { x, y }) = (&self.name, steps[row]);
+            let message =
+                format!("the group \"{name}\" moves row {row} by ({x:e}, {y:e}) m; the limit is {limit:.3e} m");
+            return Err(PyValueError::new_err(message));
+        }
         particles.scatter(&steps, |row, step| out.add(row, step));
         Ok(())
     }

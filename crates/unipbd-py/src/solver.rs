@@ -4,6 +4,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 
 use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::PyTraverseError;
+use pyo3::exceptions::PyValueError;
 use pyo3::gc::PyVisit;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
@@ -56,6 +57,7 @@ impl Solver {
         threads: Option<usize>,
         settled: bool,
     ) -> PyResult<Self> {
+        unipbd_core::simd::wanted().map_err(PyValueError::new_err)?;
         let scene = scene::from_dict(py, description)?;
         let options = BuildOptions { threads, seed };
         let running = if settled {
@@ -107,7 +109,8 @@ impl Solver {
         let failure = world.failure.clone();
         let project = Callable::new(project);
         self.callables.lock().unwrap_or_else(PoisonError::into_inner).push(project.clone());
-        world.running.solver.add_group(Box::new(PythonGroup { name, project, failure }));
+        let speed_limit = world.running.solver.speed_limit();
+        world.running.solver.add_group(Box::new(PythonGroup { name, project, failure, speed_limit }));
         world.has_groups = true;
         Ok(())
     }

@@ -17,9 +17,32 @@ pub(crate) mod x86;
 pub use number::Number;
 
 use crate::math::Vector;
+use std::sync::OnceLock;
 
 /// Rows in a block.
 pub const LANES: usize = 8;
+
+/// The environment variable that names the instruction set to use, for tests and comparisons: results never depend on
+/// it. Empty, it is as if it were not set.
+pub const VARIABLE: &str = "UNIPBD_SIMD";
+
+/// The level that the environment asks for.
+///
+/// # Errors
+/// A sentence, where the word names no level that this machine can run.
+pub fn wanted() -> Result<Option<Level>, String> {
+    let word = std::env::var_os(VARIABLE).unwrap_or_default();
+    let word = word.to_string_lossy();
+    if word.trim().is_empty() {
+        return Ok(None);
+    }
+    let levels = Level::available();
+    let names: Vec<&str> = levels.iter().map(|level| level.name()).collect();
+    let found = levels.iter().find(|level| level.name() == word.trim());
+    found.copied().map(Some).ok_or_else(|| {
+        format!("{VARIABLE} must be an instruction set of this machine ({}), found {word:?}", names.join(", "))
+    })
+}
 
 /// Two vectors of one row, read by one load.
 pub(crate) type Record = [Vector; 2];
@@ -46,10 +69,26 @@ impl Level {
         all.into_iter().filter(|level| level.runs_here()).collect()
     }
 
-    /// The fastest level of this machine.
+    /// The fastest level of this machine, or the one that [`VARIABLE`] names.
     pub fn best() -> Level {
+        static CHOSEN: OnceLock<Level> = OnceLock::new();
+        *CHOSEN.get_or_init(|| wanted().ok().flatten().unwrap_or_else(Level::fastest))
+    }
+
+    fn fastest() -> Level {
         let fastest_first = [Level::Avx512, Level::Avx2, Level::Sse2, Level::Portable];
         fastest_first.into_iter().find(|level| level.runs_here()).unwrap_or(Level::Scalar)
+    }
+
+    /// The name of the level in [`VARIABLE`].
+    pub fn name(self) -> &'static str {
+        match self {
+            Level::Scalar => "scalar",
+            Level::Portable => "portable",
+            Level::Sse2 => "sse2",
+            Level::Avx2 => "avx2",
+            Level::Avx512 => "avx512",
+        }
     }
 
     fn runs_here(self) -> bool {

@@ -1,6 +1,7 @@
 //! The solver loop. `pipeline.rs` is the entry point for readers: the stages of a substep and their order.
 
 mod access;
+mod density_watch;
 mod diagnose;
 mod error;
 mod integrate;

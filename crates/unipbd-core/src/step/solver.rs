@@ -62,7 +62,8 @@ impl Solver {
     /// ```
     ///
     /// # Errors
-    /// The error of `hook`, or a [`SolverError`] converted to its type. After an error of the hook the run
+    /// The error of `hook`, or a [`SolverError`] converted to its type, such as [`SolverError::Hook`] for an acceleration
+    /// that is not finite or absurd. After an error of the hook the run
     /// stands between two substeps; the next call continues with the rest of the frame.
     pub fn step_frame_with<E: From<SolverError>>(
         &mut self,
@@ -74,6 +75,10 @@ impl Solver {
             if let Err(error) = hook(&mut SubstepView::new(&mut self.world)) {
                 self.world.parts.particles.clear_accelerations();
                 return Err(error);
+            }
+            if let Err(error) = self.world.check_accelerations() {
+                self.world.parts.particles.clear_accelerations();
+                return Err(error.into());
             }
             self.on_threads(World::finish_substep)?;
         }
@@ -114,6 +119,16 @@ impl Solver {
     /// The stages of a substep of this scene, in order.
     pub fn stages(&self) -> &[Stage] {
         &self.world.plan.substep
+    }
+
+    /// The speed from which on a run counts as diverged [m/s]: a million spacings in a frame.
+    pub fn speed_limit(&self) -> f64 {
+        self.world.speed_limit()
+    }
+
+    /// The radius within which particles act on each other [m].
+    pub(crate) fn reach(&self) -> f64 {
+        f64::from(self.world.parts.neighbors.radius())
     }
 
     /// Threads in use. Never changes results.

@@ -3,6 +3,7 @@
 use crate::bytes::held;
 use std::sync::OnceLock;
 
+use super::density_watch::Watched;
 use super::integrate::BodyForce;
 use super::pipeline::{Features, Plan};
 use super::substeps::{Choice, SubstepRule};
@@ -117,6 +118,8 @@ pub(crate) struct World {
     pub(super) velocities: Vec<Vector>,
     /// The criterion for the number of substeps of the last frame.
     pub(super) choice: Choice,
+    /// What is known about the density of each material.
+    pub(super) watched: Vec<Watched>,
     /// Effects that are limited for stability, with a warning already issued.
     pub(super) cut: Vec<&'static str>,
     /// Iterations of the frame so far.
@@ -143,6 +146,7 @@ impl World {
             events: Vec::new(),
             timings: Timings::default(),
             measured: Measured::default(),
+            watched: Vec::new(),
             cut: Vec::new(),
             corrections: Corrections::default(),
             changes: Changes::default(),
@@ -275,6 +279,7 @@ impl World {
     /// Runs the stages that end a frame and sets the clock to its end.
     pub fn end_frame(&mut self, begun: Begun) -> Result<FrameReport, SolverError> {
         self.run_all(|plan| &plan.end)?;
+        self.watch_density();
         let inverse = 1.0 / self.parts.frame_time;
         self.wall_forces = self.wall_impulses.iter().map(|impulse| *impulse * inverse).collect();
         self.clock.done = 0;

@@ -27,6 +27,7 @@ mod pair_contacts;
 mod pairs;
 mod pieces;
 mod push;
+mod saved;
 mod settings;
 mod solver;
 mod union_find;
@@ -122,11 +123,6 @@ impl Contacts {
     /// The same, with another contact solver.
     pub(crate) fn solved_by(self, solver: Arc<dyn ContactSolver>) -> Contacts {
         Contacts { solver, ..self }
-    }
-
-    /// Takes the contact solver of another instance: a saved state does not contain it.
-    pub(crate) fn solve_like(&mut self, other: &Contacts) {
-        self.solver = other.solver.clone();
     }
 
     /// From now on the search and the sweeps may run on the pool of the caller, or may not.

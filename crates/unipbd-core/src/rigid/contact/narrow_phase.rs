@@ -53,6 +53,30 @@ impl NarrowPhase {
         (&mut self.found.contacts, &mut self.found.caches)
     }
 
+    /// The search of a saved state, between the pieces of this one; `None` if the state makes no sense.
+    pub fn from_saved(&self, saved: NarrowPhase, bodies: &Bodies) -> Option<NarrowPhase> {
+        let pieces = self.pieces.at_saved(&saved.pieces, bodies)?;
+        let mut pairs = self.pairs.from_saved(saved.pairs, &pieces, bodies)?;
+        let sound = [&saved.found, &saved.frozen].into_iter().all(|set| set.is_sound(&pieces, &pairs.all));
+        if !sound {
+            return None;
+        }
+        let mut active = pairs.active.iter().map(|active| active.index).peekable();
+        for (span, index) in pairs.spans.iter_mut().zip(0u32..) {
+            let is_active = active.next_if_eq(&index).is_some();
+            let set = if span.frozen { &saved.frozen } else { &saved.found };
+            let whole = span.fits(set.caches.len()) && set.caches[span.range()].iter().all(|known| known.pair == index);
+            if !whole && (is_active || span.frozen) {
+                return None;
+            }
+            if !whole {
+                *span = Span::default();
+            }
+        }
+        let (found, frozen, parallelism) = (saved.found, saved.frozen, self.parallelism);
+        Some(NarrowPhase { pieces, pairs, found, frozen, parallelism, ..NarrowPhase::default() })
+    }
+
     /// Disables collisions between two bodies.
     pub fn exclude(&mut self, a: u32, b: u32) {
         self.pairs.exclude(a, b);
