@@ -45,6 +45,7 @@ impl Dice {
         (self.0.next_u64() % count.max(1) as u64) as usize
     }
 
+    #[allow(dead_code)] // Not every target needs it.
     pub fn one_in(&mut self, count: usize) -> bool {
         self.below(count) == 0
     }

@@ -102,7 +102,9 @@ fn lengths_beyond_the_record_reserve_nothing() {
     let place = crafted(CHUNK, |body| {
         let mut records = zstd::decode_all(&body[44..]).unwrap();
         // A channel whose topic claims four gigabytes.
-        let record = [&[CHANNEL][..], &12_u64.to_le_bytes(), &[1, 0, 1, 0, 0xff, 0xff, 0xff, 0xff, b'a', b'b', b'c', b'd']].concat();
+        let record =
+            [&[CHANNEL][..], &12_u64.to_le_bytes(), &[1, 0, 1, 0, 0xff, 0xff, 0xff, 0xff, b'a', b'b', b'c', b'd']]
+                .concat();
         records.splice(0..0, record);
         *body = packed(&records);
     });

@@ -4,24 +4,42 @@ use crate::support::Place;
 
 /// Kinds of scene, each with more than the 4,096 rows from which on loops are shared among threads.
 const SCENES: [(&str, &str); 6] = [
-    ("liquid", "spacing = 0.02\n[solver]\nsubsteps = 3\nsettle_substeps = 2\n[[liquid]]\nname = \"water\"\nxsph = 0.05\n\
+    (
+        "liquid",
+        "spacing = 0.02\n[solver]\nsubsteps = 3\nsettle_substeps = 2\n[[liquid]]\nname = \"water\"\nxsph = 0.05\n\
       [[block]]\nmaterial = \"water\"\nmin = [0.0, 0.0]\nmax = [1.4, 1.4]\n[[tank]]\nmin = [0.0, 0.0]\nmax = [2.0, 2.0]\n\
-      [[body]]\nsize = [0.3, 0.2]\nposition = [1.6, 0.5]\n[[body]]\nradius = 0.1\nposition = [1.7, 0.9]\n"),
-    ("grid", "spacing = 0.02\n[solver]\ncoarse_projection = 3\nsettle_substeps = 2\n[[liquid]]\nname = \"water\"\n[[block]]\n\
-      material = \"water\"\nmin = [0.0, 0.0]\nmax = [1.4, 1.4]\n[[tank]]\nmin = [0.0, 0.0]\nmax = [2.0, 2.0]\n"),
-    ("gas", "spacing = 0.02\n[solver]\nsubsteps = 3\nsettle_substeps = 2\n[[gas]]\nname = \"air\"\nvorticity = 2.0\n\
+      [[body]]\nsize = [0.3, 0.2]\nposition = [1.6, 0.5]\n[[body]]\nradius = 0.1\nposition = [1.7, 0.9]\n",
+    ),
+    (
+        "grid",
+        "spacing = 0.02\n[solver]\ncoarse_projection = 3\nsettle_substeps = 2\n[[liquid]]\nname = \"water\"\n[[block]]\n\
+      material = \"water\"\nmin = [0.0, 0.0]\nmax = [1.4, 1.4]\n[[tank]]\nmin = [0.0, 0.0]\nmax = [2.0, 2.0]\n",
+    ),
+    (
+        "gas",
+        "spacing = 0.02\n[solver]\nsubsteps = 3\nsettle_substeps = 2\n[[gas]]\nname = \"air\"\nvorticity = 2.0\n\
       conductivity = 0.0004\n[[smoke]]\nname = \"soot\"\n[[block]]\nmaterial = \"air\"\nmin = [0.0, 0.0]\nmax = [1.4, 1.4]\n\
       temperature = 1.0\njitter = 0.1\n[[tank]]\nmin = [0.0, 0.0]\nmax = [1.4, 1.4]\n[[points]]\nmaterial = \"soot\"\n\
-      positions = [[0.5, 0.5], [0.6, 0.5]]\n"),
-    ("soft and ropes", "spacing = 0.02\n[solver]\nsubsteps = 3\nsettle_substeps = 2\n[[liquid]]\nname = \"water\"\n[[solid]]\n\
+      positions = [[0.5, 0.5], [0.6, 0.5]]\n",
+    ),
+    (
+        "soft and ropes",
+        "spacing = 0.02\n[solver]\nsubsteps = 3\nsettle_substeps = 2\n[[liquid]]\nname = \"water\"\n[[solid]]\n\
       name = \"hemp\"\n[[block]]\nmaterial = \"water\"\nmin = [0.0, 0.0]\nmax = [1.4, 1.3]\n[[tank]]\nmin = [0.0, 0.0]\n\
       max = [2.0, 2.0]\n[[body]]\nsolver = \"shape_matching\"\nstiffness = 0.5\nradius = 0.15\nposition = [1.7, 0.6]\n\
-      [[rope]]\nmaterial = \"hemp\"\nfrom = [0.3, 1.9]\nto = [1.2, 1.9]\n"),
-    ("sleep", "spacing = 0.02\n[solver]\nsleep = true\n[[liquid]]\nname = \"water\"\n[[block]]\nmaterial = \"water\"\n\
-      min = [0.0, 0.0]\nmax = [2.0, 1.0]\n[[tank]]\nmin = [0.0, 0.0]\nmax = [2.0, 2.0]\n"),
-    ("periodic", "spacing = 0.02\n[solver]\nsubsteps = 3\nsettle_substeps = 2\n[domain]\nperiodic_x = [0.0, 1.4]\n\
+      [[rope]]\nmaterial = \"hemp\"\nfrom = [0.3, 1.9]\nto = [1.2, 1.9]\n",
+    ),
+    (
+        "sleep",
+        "spacing = 0.02\n[solver]\nsleep = true\n[[liquid]]\nname = \"water\"\n[[block]]\nmaterial = \"water\"\n\
+      min = [0.0, 0.0]\nmax = [2.0, 1.0]\n[[tank]]\nmin = [0.0, 0.0]\nmax = [2.0, 2.0]\n",
+    ),
+    (
+        "periodic",
+        "spacing = 0.02\n[solver]\nsubsteps = 3\nsettle_substeps = 2\n[domain]\nperiodic_x = [0.0, 1.4]\n\
       periodic_y = [0.0, 1.4]\n[[liquid]]\nname = \"water\"\nsurface = \"none\"\n[[block]]\nmaterial = \"water\"\n\
-      min = [0.0, 0.0]\nmax = [1.4, 1.4]\nvelocity = [1.0, 0.5]\njitter = 0.1\n"),
+      min = [0.0, 0.0]\nmax = [1.4, 1.4]\nvelocity = [1.0, 0.5]\njitter = 0.1\n",
+    ),
 ];
 
 const LEVELS: [&str; 5] = ["scalar", "portable", "sse2", "avx2", "avx512"];

@@ -58,7 +58,8 @@ fn hundreds_of_bodies_in_one_place_are_refused() {
 fn thousands_of_joints_of_bodies_that_do_not_exist() {
     let place = Place::new();
     let mut scene = "spacing = 0.1\n".to_owned();
-    (0..3000).for_each(|k| writeln!(scene, "[[body]]\nname = \"b{k}\"\nradius = 0.2\nposition = [{k}.0, 0.5]").unwrap());
+    (0..3000)
+        .for_each(|k| writeln!(scene, "[[body]]\nname = \"b{k}\"\nradius = 0.2\nposition = [{k}.0, 0.5]").unwrap());
     (0..3000).for_each(|k| writeln!(scene, "[[joint]]\nkind = \"hinge\"\nbody = \"c{k}\"\nat = [0.0, 0.0]").unwrap());
     assert!(check(&place, &scene).contains("3000 problems"));
 }

@@ -12,8 +12,30 @@ const SMALL: u64 = 1500;
 
 /// Values that scenes stumble over.
 const VALUES: [&str; 24] = [
-    "0", "-0.0", "1", "-1", "1e-300", "1e-9", "0.5", "3", "1e3", "1e9", "1e30", "1e308", "9223372036854775807", "nan", "inf",
-    "-inf", "true", "\"auto\"", "\"water\"", "[]", "[0.0, 0.0]", "[1e9, -1e9]", "{}", "1979-05-27",
+    "0",
+    "-0.0",
+    "1",
+    "-1",
+    "1e-300",
+    "1e-9",
+    "0.5",
+    "3",
+    "1e3",
+    "1e9",
+    "1e30",
+    "1e308",
+    "9223372036854775807",
+    "nan",
+    "inf",
+    "-inf",
+    "true",
+    "\"auto\"",
+    "\"water\"",
+    "[]",
+    "[0.0, 0.0]",
+    "[1e9, -1e9]",
+    "{}",
+    "1979-05-27",
 ];
 
 fn corpus() -> Vec<String> {
@@ -78,8 +100,28 @@ fn a_scene_file_is_read_or_refused() {
 
 /// Keys of scenes and what looks like them.
 const WORDS: [&str; 22] = [
-    "spacing", "solver", "substeps", "liquid", "0", "1", "-1", "99999999999999999999", "water", "density", "block", "min",
-    "body", "copies", "columns", "emitter", "gravity", "", "\"a b\"", "\u{1b}[2J", "tank", "open",
+    "spacing",
+    "solver",
+    "substeps",
+    "liquid",
+    "0",
+    "1",
+    "-1",
+    "99999999999999999999",
+    "water",
+    "density",
+    "block",
+    "min",
+    "body",
+    "copies",
+    "columns",
+    "emitter",
+    "gravity",
+    "",
+    "\"a b\"",
+    "\u{1b}[2J",
+    "tank",
+    "open",
 ];
 
 fn override_text(dice: &mut Dice) -> Vec<u8> {

@@ -3,6 +3,8 @@
 //! A [`State`] holds everything that a run goes on from, bit for bit: columns in row order with their
 //! rounding remainders, multipliers, the reference positions and the skin of the neighbour list (the
 //! same list is made from them again), clock, emitters, groups. Saving never changes a run.
+//!
+//! Bytes are read by the version of the format that wrote them and by no other: a run goes on bit for bit, or not at all.
 
 mod bodies;
 mod check;

@@ -1,13 +1,19 @@
-//! One warning for a material that is far from its rest density, frame after frame.
+//! One warning for a fluid that is far from its rest density, frame after frame.
+//!
+//! The mean |C| counts. Of a liquid only compression does: at a free surface, in spray and in a rope, particles lack
+//! neighbours, and C is negative where nothing is wrong. A gas may be thin for longer: where it begins to flow out.
 
 use super::world::World;
 use crate::math::{Real, real, wide};
 use crate::observe::{Event, Severity};
+use crate::phase::Phase;
 
 /// Mean |C| of a material from which on a run is no longer to be trusted.
 const FAR_OFF: f64 = 0.1;
-/// Frames in a row that it takes: a splash may pass it for one.
+/// Frames in a row that it takes: a splash may pass it for one...
 const FRAMES: u32 = 2;
+/// ...and a gas that begins to flow out for a quarter of a second at the usual rate.
+const THIN_FRAMES: u32 = 15;
 /// Distance of two particles, in spacings, that counts as one place.
 const ONE_PLACE: f64 = 1e-3;
 
@@ -42,7 +48,8 @@ impl World {
             let watched = &mut self.watched[material];
             let off = errors.count > 0 && errors.size > FAR_OFF * errors.count as f64;
             watched.frames = if off { watched.frames + 1 } else { 0 };
-            if watched.frames >= FRAMES && !watched.warned {
+            let enough = if errors.sum < 0.0 { THIN_FRAMES } else { FRAMES };
+            if watched.frames >= enough && !watched.warned {
                 watched.warned = true;
                 self.warn_of_density(material, errors);
             }
@@ -53,7 +60,11 @@ impl World {
         let particles = &self.parts.particles;
         let mut all = vec![Errors::default(); self.parts.materials.len()];
         for row in (0..particles.dense()).filter(|&row| particles.inverse_mass[row] > 0.0) {
-            let error = particles.density_error[row];
+            let error = match particles.phase[row] {
+                Phase::Liquid => particles.density_error[row].max(0.0),
+                Phase::Gas => particles.density_error[row],
+                _ => continue,
+            };
             let of = &mut all[usize::from(particles.material[row])];
             of.count += 1;
             of.sum += f64::from(error);
@@ -84,7 +95,7 @@ impl World {
             return "particles lie in one place there and never part; move them apart at the start".to_owned();
         }
         if errors.sum < 0.0 {
-            return "its particles are farther apart than at rest, as in spray or where it flows out".to_owned();
+            return "its particles are farther apart than at rest, as where it flows out or is stirred".to_owned();
         }
         if wanted > self.clock.substeps {
             let taken = self.clock.substeps;

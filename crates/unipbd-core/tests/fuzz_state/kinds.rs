@@ -2,8 +2,8 @@
 
 use super::scenes;
 use unipbd_core::scene::{
-    Block, BodyDescription, BodyKind, BodySolver, Copies, Domain, Heap, Held, JointDescription, JointRule, Link, Liquid,
-    Rope, Scene, Side, Solid, SolverSettings, Tank, Tethers,
+    Block, BodyDescription, BodyKind, BodySolver, Copies, Domain, Heap, Held, JointDescription, JointRule, Link,
+    Liquid, Rope, Scene, Side, Solid, SolverSettings, Tank, Tethers,
 };
 
 fn scene(text: impl FnOnce(&mut Scene)) -> Scene {
@@ -32,7 +32,11 @@ fn tied() -> Scene {
     scene(|scene| {
         scene.solid.push(Solid { name: "hemp".into(), ..Solid::default() });
         scene.body.push(BodyDescription { name: "ball".into(), ..BodyDescription::disc(0.2, [1.5, 1.5]) });
-        let soft = BodyDescription { solver: BodySolver::ShapeMatching, stiffness: 0.5, ..BodyDescription::disc(0.3, [0.6, 1.0]) };
+        let soft = BodyDescription {
+            solver: BodySolver::ShapeMatching,
+            stiffness: 0.5,
+            ..BodyDescription::disc(0.3, [0.6, 1.0])
+        };
         scene.body.push(soft);
         scene.rope.push(Rope {
             material: "hemp".into(),

@@ -28,7 +28,7 @@ fn added_particles_in_a_small_box_are_refused_before_there_is_a_list() {
     let mut solver = pool().build(BuildOptions { threads: Some(1), seed: None }).unwrap();
     let add = |count| {
         let positions = points(count, 0.05).into_iter().map(Vector64::from).collect();
-        Edit::new().add_points(edit::Points { material: "water".into(), positions, ..edit::Points::default() })
+        Edit::new().add_points(edit::Points::new("water", positions))
     };
     let before = (solver.ids().len(), solver.state_hash());
     let refused = solver.apply(&add(200_000)).unwrap_err().to_string();

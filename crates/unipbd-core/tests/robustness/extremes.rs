@@ -25,7 +25,9 @@ fn densities_and_masses_at_the_ends_of_single_precision() {
             scene.body.push(BodyDescription { density, ..BodyDescription::disc(0.2, [1.5, 0.5]) });
         });
     }
-    is_refused("liquid[0].particle_mass", "must be from 1e-12 to 1e15", |scene| scene.liquid[0].particle_mass = Some(1e-40));
+    is_refused("liquid[0].particle_mass", "must be from 1e-12 to 1e15", |scene| {
+        scene.liquid[0].particle_mass = Some(1e-40)
+    });
     is_refused("body[0].mass", "must be from 1e-12 to 1e15", |scene| {
         scene.body.push(BodyDescription { mass: Some(1e300), ..BodyDescription::disc(0.2, [1.5, 0.5]) });
     });

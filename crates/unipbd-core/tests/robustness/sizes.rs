@@ -18,13 +18,17 @@ fn bodies_larger_than_coordinates_can_be() {
 fn bodies_that_hold_too_many_samples() {
     is_refused("body[0]", "samples; the limit is 1e7", |scene| scene.body.push(BodyDescription::disc(1e4, [0.5, 0.5])));
     is_refused("body[0]", "samples; the limit is 1e7", |scene| {
-        scene.body.push(BodyDescription { copies: with_copies(300, 300).copies, ..BodyDescription::disc(1.0, [0.5, 0.5]) });
+        scene
+            .body
+            .push(BodyDescription { copies: with_copies(300, 300).copies, ..BodyDescription::disc(1.0, [0.5, 0.5]) });
     });
 }
 
 #[test]
 fn copies_by_the_thousand_million() {
-    is_refused("body[0].copies.columns", "must be from 1 to 100000", |scene| scene.body.push(with_copies(1_000_000_000, 1)));
+    is_refused("body[0].copies.columns", "must be from 1 to 100000", |scene| {
+        scene.body.push(with_copies(1_000_000_000, 1))
+    });
     is_refused("body[0].copies", "the limit is 200000", |scene| scene.body.push(with_copies(100_000, 100_000)));
     // Other tables ask for the names of bodies.
     is_refused("joint[0].body", "there is no body", |scene| {
