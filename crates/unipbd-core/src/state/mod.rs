@@ -29,6 +29,8 @@ pub struct State {
     particles: Particles,
     list: SavedList,
     sections: Vec<Section>,
+    /// Whether it comes from bytes, which anybody may have made.
+    read: bool,
 }
 
 /// The additional data of one part of a run (emitters, a constraint group).
