@@ -75,7 +75,7 @@ mod tests {
 
     #[test]
     fn one_old_particle_among_young_ones_costs_no_room() {
-        let ids: Vec<u32> = [3].into_iter().chain((4_000_000_000..).step_by(7).take(500)).rev().collect();
+        let ids: Vec<u32> = (0..500).rev().map(|k| 4_000_000_000 + 7 * k).chain([3]).collect();
         let mut index = RowIndex::default();
         index.rebuild(&ids);
         assert!(index.memory_bytes() < 10_000, "{} bytes", index.memory_bytes());

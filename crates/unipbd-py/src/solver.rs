@@ -57,7 +57,7 @@ impl Solver {
         threads: Option<usize>,
         settled: bool,
     ) -> PyResult<Self> {
-        unipbd_core::simd::wanted().map_err(PyValueError::new_err)?;
+        unipbd_cli::instruction_set::from_environment().map_err(PyValueError::new_err)?;
         let scene = scene::from_dict(py, description)?;
         let options = BuildOptions { threads, seed };
         let running = if settled {

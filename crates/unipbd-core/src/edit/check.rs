@@ -51,7 +51,11 @@ impl<'a> Checker<'a> {
             return Ok(());
         }
         let particles = self.solver.particles();
-        let there = particles.positions()[..particles.dense()].iter().map(|&position| wide(position));
+        let leave = edit.changes.iter().filter(|change| matches!(change.values, Values::Positions(_)));
+        let mut gone: Vec<u32> = leave.flat_map(|change| &change.ids).chain(&edit.removals).copied().collect();
+        gone.sort_unstable();
+        let stays = |row: &usize| gone.binary_search(&particles.ids()[*row]).is_err();
+        let there = (0..particles.dense()).filter(stays).map(|row| wide(particles.positions()[row]));
         match crowd(new, there, self.solver.reach()) {
             Some(crowd) => {
                 Err(EditError::Unfit(format!("it would bring {crowd}: leave about one spacing between them")))

@@ -22,26 +22,22 @@ use std::sync::OnceLock;
 /// Rows in a block.
 pub const LANES: usize = 8;
 
-/// The environment variable that names the instruction set to use, for tests and comparisons: results never depend on
-/// it. Empty, it is as if it were not set.
-pub const VARIABLE: &str = "UNIPBD_SIMD";
+/// The level that was chosen for this process: the first choice stays.
+static CHOSEN: OnceLock<Level> = OnceLock::new();
 
-/// The level that the environment asks for.
+/// Chooses the level of this name for all that follows in this process, for tests and comparisons: results never depend
+/// on it.
 ///
 /// # Errors
-/// A sentence, where the word names no level that this machine can run.
-pub fn wanted() -> Result<Option<Level>, String> {
-    let word = std::env::var_os(VARIABLE).unwrap_or_default();
-    let word = word.to_string_lossy();
-    if word.trim().is_empty() {
-        return Ok(None);
-    }
+/// A sentence, where the word names no level that this machine can run, or another level is in use.
+pub fn choose(word: &str) -> Result<(), String> {
     let levels = Level::available();
     let names: Vec<&str> = levels.iter().map(|level| level.name()).collect();
-    let found = levels.iter().find(|level| level.name() == word.trim());
-    found.copied().map(Some).ok_or_else(|| {
-        format!("{VARIABLE} must be an instruction set of this machine ({}), found {word:?}", names.join(", "))
-    })
+    let found = levels.iter().copied().find(|level| level.name() == word);
+    let level = found
+        .ok_or_else(|| format!("must be an instruction set of this machine ({}), found {word:?}", names.join(", ")))?;
+    let used = *CHOSEN.get_or_init(|| level);
+    if used == level { Ok(()) } else { Err(format!("is {word:?}, but {} is in use already", used.name())) }
 }
 
 /// Two vectors of one row, read by one load.
@@ -69,10 +65,9 @@ impl Level {
         all.into_iter().filter(|level| level.runs_here()).collect()
     }
 
-    /// The fastest level of this machine, or the one that [`VARIABLE`] names.
+    /// The level in use: the fastest of this machine, or that of [`choose`].
     pub fn best() -> Level {
-        static CHOSEN: OnceLock<Level> = OnceLock::new();
-        *CHOSEN.get_or_init(|| wanted().ok().flatten().unwrap_or_else(Level::fastest))
+        *CHOSEN.get_or_init(Level::fastest)
     }
 
     fn fastest() -> Level {
@@ -80,7 +75,7 @@ impl Level {
         fastest_first.into_iter().find(|level| level.runs_here()).unwrap_or(Level::Scalar)
     }
 
-    /// The name of the level in [`VARIABLE`].
+    /// The name of the level.
     pub fn name(self) -> &'static str {
         match self {
             Level::Scalar => "scalar",

@@ -3,8 +3,9 @@
 //! The mean |C| counts. Of a liquid only compression does: at a free surface, in spray and in a rope, particles lack
 //! neighbours, and C is negative where nothing is wrong. A gas may be thin for longer: where it begins to flow out.
 
+use super::watched::{Errors, Watched};
 use super::world::World;
-use crate::math::{Real, real, wide};
+use crate::math::{real, wide};
 use crate::observe::{Event, Severity};
 use crate::phase::Phase;
 
@@ -16,25 +17,6 @@ const FRAMES: u32 = 2;
 const THIN_FRAMES: u32 = 15;
 /// Distance of two particles, in spacings, that counts as one place.
 const ONE_PLACE: f64 = 1e-3;
-
-/// What is known about a material.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(super) struct Watched {
-    /// Frames in a row that it was far off.
-    frames: u32,
-    warned: bool,
-}
-
-/// Density errors of a material.
-#[derive(Clone, Copy, Default)]
-struct Errors {
-    count: u64,
-    sum: f64,
-    size: f64,
-    /// Row of the largest |C|.
-    worst: usize,
-    largest: Real,
-}
 
 impl World {
     /// At the end of a frame: warns of each material once.

@@ -14,6 +14,7 @@ mod substeps;
 mod threads;
 mod timings;
 mod view;
+mod watched;
 mod world;
 
 pub use error::SolverError;

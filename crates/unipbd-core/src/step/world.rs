@@ -3,11 +3,11 @@
 use crate::bytes::held;
 use std::sync::OnceLock;
 
-use super::density_watch::Watched;
 use super::integrate::BodyForce;
 use super::pipeline::{Features, Plan};
 use super::substeps::{Choice, SubstepRule};
 use super::timings::Timings;
+use super::watched::Watched;
 use super::{FrameReport, SolverError, Stage};
 use crate::constraints::{ConstraintGroup, CorrectionParts, Corrections, Needs, Substep};
 use crate::coupling::RigidBodies;
