@@ -7,6 +7,7 @@ const CHANNEL: u8 = 0x04;
 const CHUNK: u8 = 0x06;
 const ATTACHMENT: u8 = 0x09;
 const METADATA: u8 = 0x0c;
+const DATA_END: u8 = 0x0f;
 
 /// The records of a log behind its first magic: kind and body.
 fn records(log: &[u8]) -> Vec<(u8, Vec<u8>)> {
@@ -27,7 +28,10 @@ fn crafted(kind: u8, change: impl FnOnce(&mut Vec<u8>)) -> Place {
     let mut records = records(&log);
     change(&mut records.iter_mut().find(|(found, _)| *found == kind).unwrap().1);
     let mut bytes = log[..MAGIC].to_vec();
-    for (kind, body) in records {
+    for (kind, mut body) in records {
+        if kind == DATA_END {
+            body.fill(0); // no checksum of what was changed
+        }
         bytes.push(kind);
         bytes.extend((body.len() as u64).to_le_bytes());
         bytes.extend(body);

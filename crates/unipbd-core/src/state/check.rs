@@ -23,7 +23,8 @@ impl State {
     fn check_clock(&self) -> Result<(), StateError> {
         let clock = &self.clock;
         let times = [clock.time, clock.dt, clock.speed, clock.pressure_limit];
-        if !times.into_iter().all(|value| value >= 0.0) || !(clock.time.is_finite() && clock.dt.is_finite()) {
+        let finite = clock.time.is_finite() && clock.dt.is_finite();
+        if !(finite && times.into_iter().all(|value| value >= 0.0)) {
             return Err(damaged("its clock is not a finite time"));
         }
         if ![clock.frame, clock.step, clock.generation].into_iter().all(|count| count < MOST_STEPS) {

@@ -54,9 +54,9 @@ impl NarrowPhase {
     }
 
     /// The search of a saved state, between the pieces of this one; `None` if the state makes no sense.
-    pub fn from_saved(&self, saved: NarrowPhase, bodies: &Bodies) -> Option<NarrowPhase> {
+    pub fn at_saved(&self, saved: NarrowPhase, bodies: &Bodies) -> Option<NarrowPhase> {
         let pieces = self.pieces.at_saved(&saved.pieces, bodies)?;
-        let mut pairs = self.pairs.from_saved(saved.pairs, &pieces, bodies)?;
+        let mut pairs = self.pairs.at_saved(saved.pairs, &pieces, bodies)?;
         let sound = [&saved.found, &saved.frozen].into_iter().all(|set| set.is_sound(&pieces, &pairs.all));
         if !sound {
             return None;

@@ -134,7 +134,7 @@ impl Pairs {
     }
 
     /// Pairs of a saved state, made anew between these pieces; `None` if the state makes no sense.
-    pub fn from_saved(&self, saved: Pairs, pieces: &Pieces, bodies: &Bodies) -> Option<Pairs> {
+    pub fn at_saved(&self, saved: Pairs, pieces: &Pieces, bodies: &Bodies) -> Option<Pairs> {
         let count = saved.all.len();
         let ordered = saved.all.windows(2).all(|two| two[0].key < two[1].key);
         let known = |&(a, b): &(u32, u32)| {

@@ -19,7 +19,7 @@ impl Contacts {
         let mut jacobi = Jacobi::default();
         jacobi.parallelism = self.jacobi.parallelism;
         Some(Contacts {
-            narrow_phase: self.narrow_phase.from_saved(saved.narrow_phase, bodies)?,
+            narrow_phase: self.narrow_phase.at_saved(saved.narrow_phase, bodies)?,
             joints: saved.joints,
             islands: Islands::from_saved(saved.islands, bodies.len()),
             jacobi,

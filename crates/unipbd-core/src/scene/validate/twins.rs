@@ -47,7 +47,7 @@ pub(super) fn check_bodies(checker: &mut Checker) {
     let mut found: Vec<KeyPath> = Vec::new();
     for (path, body) in entries("body", &checker.scene.body) {
         let size = size(body);
-        if !(size > 0.0 && size.is_finite()) || !meets_its_like(body) {
+        if !(size > 0.0 && size.is_finite() && meets_its_like(body)) {
             continue;
         }
         let class = size.log2().floor();
