@@ -7,11 +7,11 @@
 set -u
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
 export UNIPBD_FUZZ_CASES="${1:-100000}" UNIPBD_FUZZ_SEED="${2:-0}" UNIPBD_FUZZ_KEEP="$PWD/target/fuzz"
-cargo test --release --no-run -p unipbd-core --test fuzz_state -p unipbd-cli --test fuzz || exit 1
+targets=(-p unipbd-core -p unipbd-cli --test fuzz_state --test fuzz)
+cargo test --release --no-run "${targets[@]}" || exit 1
 failed=0
 ulimit -v 3000000
-cargo test --release -p unipbd-core --test fuzz_state -- --nocapture --test-threads 1 || failed=1
-cargo test --release -p unipbd-cli --test fuzz -- --nocapture --test-threads 1 || failed=1
+cargo test --release --no-fail-fast "${targets[@]}" -- --nocapture --test-threads 1 || failed=1
 if [ -x target/python-tests/bin/python ]; then
     UNIPBD_FUZZ_CASES=$((UNIPBD_FUZZ_CASES / 25)) target/python-tests/bin/python -m pytest -q -s tests/python/test_sequences.py || failed=1
 else
