@@ -4,6 +4,7 @@ use super::world::{Parts, World};
 use super::{SolverError, Stage};
 use crate::constraints::ConstraintGroup;
 use crate::effects::Effect;
+use crate::parallel::Parallelism;
 
 /// A running simulation. Made by [`Scene::build`](crate::scene::Scene::build).
 ///
@@ -139,6 +140,8 @@ impl Solver {
     /// From now on, uses this many threads.
     pub fn set_threads(&mut self, threads: usize) {
         self.threads = Threads::new(threads);
+        // Until the next step: what looks at the state must not ask for a pool that is gone.
+        self.world.parts.parallelism = Parallelism::Serial;
     }
 
     pub(crate) fn on_threads<T: Send>(&mut self, work: impl FnOnce(&mut World) -> T + Send) -> T {
