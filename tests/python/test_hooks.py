@@ -158,3 +158,32 @@ def test_an_exception_in_a_group_comes_out_as_itself(sim: up.Simulation) -> None
     frame = sim.frame
     sim.step(2)
     assert sim.frame == frame + 2
+
+
+@pytest.mark.parametrize("wrong", [1e30, -1e30, 3e15])
+def test_an_absurd_acceleration_names_the_hook_and_the_value(wrong: float, sim: up.Simulation) -> None:
+    def whirl(substep: up.Substep) -> None:
+        substep.add_acceleration((wrong, 0.0))
+
+    sim.on_substep(whirl)
+    before = sim.state_hash()
+    with pytest.raises(ValueError, match=r"the hook .*whirl accelerates particles by \(-?(1e30|3e15), 0e0\) m/s\^2.*limit"):
+        sim.step(1)
+    assert sim.state_hash() == before
+    sim.remove_hook(whirl)
+    sim.step(1)
+
+
+def test_hooks_that_together_accelerate_absurdly_are_stopped_too(scene: up.Scene) -> None:
+    scene.solver.substeps = 100
+    sim = scene.build(threads=1)
+    for _ in range(4):
+        sim.on_substep(lambda substep: substep.add_acceleration((1e10, 0.0)))
+    with pytest.raises(up.SolverError, match="a hook accelerates particle 0"):
+        sim.step(1)
+
+
+def test_an_absurd_displacement_names_the_group_and_the_value(sim: up.Simulation) -> None:
+    sim.add_group("pull", lambda projection: np.full((len(projection.ids), 2), 1e30))
+    with pytest.raises(ValueError, match=r'the group "pull" moves row 0 by \(1e30, 1e30\) m; the limit is'):
+        sim.step(1)

@@ -165,9 +165,30 @@ def test_threads_come_from_the_argument_or_the_environment(
     assert sim.threads == 1
     with pytest.raises(ValueError):
         sim.threads = 0
-    monkeypatch.setenv("UNIPBD_THREADS", "many")
-    with pytest.raises(ValueError, match="UNIPBD_THREADS"):
+
+
+@pytest.mark.parametrize("wrong", ["many", "0", "-1", "4097", "1000000000", "99999999999999999999999", "1.5"])
+def test_a_wrong_number_of_threads_is_refused_as_on_the_command_line(
+    wrong: str, scene: up.Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("UNIPBD_THREADS", wrong)
+    with pytest.raises(ValueError, match="UNIPBD_THREADS must be a whole number from 1 to 4096, found"):
         scene.build()
+    with pytest.raises(ValueError, match="UNIPBD_THREADS"):
+        up.Batch(scene, n=1)
+    with pytest.raises(ValueError, match="threads must be a whole number from 1 to 4096, found"):
+        scene.build(threads=wrong)  # type: ignore[arg-type]
+    sim = scene.build(threads=1)
+    with pytest.raises(ValueError, match="threads must be"):
+        sim.threads = wrong  # type: ignore[assignment]
+
+
+@pytest.mark.parametrize("empty", ["", "  "])
+def test_an_empty_variable_is_as_if_it_were_not_set(
+    empty: str, scene: up.Scene, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("UNIPBD_THREADS", empty)
+    assert scene.build().threads >= 1
     with pytest.raises(ValueError):
         scene.build(threads=0)
     with pytest.raises(ValueError, match="seed"):

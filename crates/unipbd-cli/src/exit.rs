@@ -18,8 +18,12 @@ pub enum Exit {
     Diverged = 4,
     /// A `--stop-on` condition was met, or an expectation of a scene does not hold.
     ConditionMet = 5,
+    /// The terminal was closed: SIGHUP.
+    HungUp = 129,
     /// Ctrl-C.
     Interrupted = 130,
+    /// The system or a person asked the process to end: SIGTERM.
+    Terminated = 143,
 }
 
 impl Exit {

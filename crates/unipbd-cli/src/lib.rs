@@ -4,6 +4,7 @@ pub mod args;
 mod commands;
 mod exit;
 pub mod expect;
+pub mod instruction_set;
 mod interrupt;
 pub mod read;
 pub mod record;
@@ -12,6 +13,7 @@ mod report;
 pub mod scene_file;
 pub mod simulation;
 pub mod snapshot;
+pub mod threads;
 
 use std::ffi::OsString;
 
@@ -30,6 +32,9 @@ pub fn main_with_args(arguments: impl IntoIterator<Item = OsString>) -> Exit {
     match parsed {
         Ok(parsed) => {
             let console = report::Console::new(&parsed.output);
+            if let Err(message) = instruction_set::from_environment() {
+                return report(&console, &exit::Failure::usage(message));
+            }
             commands::execute(&parsed.command, console).unwrap_or_else(|failure| report(&console, &failure))
         }
         Err(error) => {

@@ -65,6 +65,13 @@ pub fn solver(py: Python<'_>, error: &SolverError) -> PyErr {
     let fields = PyDict::new(py);
     let filled = (|| {
         fields.set_item("message", error.to_string())?;
+        if let SolverError::Hook { step, time, particle, material, .. } = error {
+            fields.set_item("stage", "hook")?;
+            fields.set_item("step", step)?;
+            fields.set_item("time", time)?;
+            fields.set_item("particle", particle)?;
+            fields.set_item("material", material)?;
+        }
         if let SolverError::Diverged { stage, step, time, particle, material, .. } = error {
             fields.set_item("stage", stage)?;
             fields.set_item("step", step)?;

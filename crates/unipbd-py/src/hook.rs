@@ -16,6 +16,10 @@ use crate::{arrays, body, errors};
 #[pyclass(frozen, extends = Particles, module = "unipbd._native")]
 pub struct Substep {
     step: u64,
+    /// Name of the hook, for messages.
+    hook: String,
+    /// From this speed on a run counts as diverged [m/s].
+    speed_limit: f64,
     bodies: Vec<Seen>,
     /// What the hook asks for; `None` once the hook has returned.
     wishes: Mutex<Option<Wishes>>,
@@ -42,13 +46,19 @@ struct Wishes {
 /// Calls a hook and carries out what it asks for.
 pub fn call(py: Python<'_>, hook: &Py<PyAny>, view: &mut SubstepView<'_>) -> PyResult<()> {
     let particles = Particles::new(view.time(), view.dt(), view.particles());
-    let substep = Bound::new(py, (Substep::new(view), particles))?;
+    let substep = Bound::new(py, (Substep::new(view, name_of(py, hook)), particles))?;
     hook.call1(py, (&substep,))?;
     let wishes = substep.get().wishes.lock().unwrap_or_else(PoisonError::into_inner).take();
     if let Some(wishes) = wishes {
         wishes.carry_out(substep.as_super().get(), view);
     }
     Ok(())
+}
+
+/// What a function calls itself.
+pub fn name_of(py: Python<'_>, function: &Py<PyAny>) -> String {
+    let named = function.getattr(py, "__qualname__").and_then(|name| name.extract(py));
+    named.unwrap_or_else(|_| "a hook".to_owned())
 }
 
 impl Wishes {
@@ -75,7 +85,7 @@ impl Wishes {
 }
 
 impl Substep {
-    fn new(view: &SubstepView<'_>) -> Self {
+    fn new(view: &SubstepView<'_>, hook: String) -> Self {
         let seen = |(body, number): (&unipbd_core::rigid::Body, u32)| Seen {
             name: body.name.clone(),
             kind: body.kind,
@@ -83,7 +93,8 @@ impl Substep {
             velocity: view.body_velocity(number),
         };
         let bodies = view.bodies().iter().zip(0..).map(seen).collect();
-        Substep { step: view.step(), bodies, wishes: Mutex::new(Some(Wishes::default())) }
+        let wishes = Mutex::new(Some(Wishes::default()));
+        Substep { step: view.step(), hook, speed_limit: view.speed_limit(), bodies, wishes }
     }
 
     fn with_wishes<T>(&self, py: Python<'_>, change: impl FnOnce(&mut Wishes) -> T) -> PyResult<T> {
@@ -92,6 +103,18 @@ impl Substep {
             Some(wishes) => Ok(change(wishes)),
             None => Err(errors::other(py, "the substep is over: use it within the hook only")),
         }
+    }
+
+    /// Refuses what would make a run diverge at once: a value that, times `duration`, is beyond the speed limit.
+    fn check_speed(&self, values: &[Vector64], does: &str, duration: f64, unit: &str) -> PyResult<()> {
+        let limit = self.speed_limit / duration;
+        let Some(row) = values.iter().position(|value| value.length() >= limit) else { return Ok(()) };
+        let Vector64 { x, y } = values[row];
+        let message = format!(
+            "the hook {} {does} by ({x:e}, {y:e}) {unit} in row {row}; the limit is {limit:.3e} {unit}",
+            self.hook
+        );
+        Err(PyValueError::new_err(message))
     }
 
     /// Whether this can be asked of a body.
@@ -130,6 +153,7 @@ impl Substep {
     fn add_accelerations(slf: &Bound<'_, Self>, accelerations: PyReadonlyArray2<'_, f64>) -> PyResult<()> {
         let count = slf.as_super().get().count();
         let wanted = checked(&arrays::rows(&accelerations), count)?;
+        slf.get().check_speed(&wanted, "accelerates particles", slf.as_super().get().dt, "m/s^2")?;
         slf.get().with_wishes(slf.py(), |wishes| wishes.accelerate(count, wanted.into_iter()))
     }
 
@@ -137,12 +161,14 @@ impl Substep {
     fn add_uniform_acceleration(slf: &Bound<'_, Self>, x: f64, y: f64) -> PyResult<()> {
         let count = slf.as_super().get().count();
         let wanted = checked(&[Vector64::new(x, y)], 1)?[0];
+        slf.get().check_speed(&[wanted], "accelerates particles", slf.as_super().get().dt, "m/s^2")?;
         slf.get().with_wishes(slf.py(), |wishes| wishes.accelerate(count, std::iter::repeat_n(wanted, count)))
     }
 
     /// Sets the velocities of these particles: how those moved by a script are moved.
     fn set_velocities(slf: &Bound<'_, Self>, ids: Vec<u32>, velocities: PyReadonlyArray2<'_, f64>) -> PyResult<()> {
         let velocities = checked(&arrays::rows(&velocities), ids.len())?;
+        slf.get().check_speed(&velocities, "moves particles", 1.0, "m/s")?;
         let particles = slf.as_super().get();
         let mut wanted = Vec::with_capacity(ids.len());
         for (id, velocity) in ids.into_iter().zip(velocities) {
@@ -163,6 +189,7 @@ impl Substep {
     fn drive_body(&self, py: Python<'_>, body: u32, velocity: [f64; 2], angular_velocity: f64) -> PyResult<()> {
         let velocity = Twist { linear: velocity.into(), angular: angular_velocity };
         self.check(body, velocity, |kind| kind != BodyKind::Static)?;
+        self.check_speed(&[velocity.linear], "drives a body", 1.0, "m/s")?;
         self.with_wishes(py, |wishes| wishes.drives.push((body, velocity)))
     }
 }

@@ -44,5 +44,6 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(scene::default_scene, module)?)?;
     module.add_function(wrap_pyfunction!(scene::estimate_scene, module)?)?;
     module.add_function(wrap_pyfunction!(command::run_command, module)?)?;
+    module.add_function(wrap_pyfunction!(command::thread_count, module)?)?;
     Ok(())
 }

@@ -1,5 +1,5 @@
 use std::path::PathBuf;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -39,13 +39,13 @@ impl Recorder {
         Ok(Recorder { fields, recorder: Mutex::new(Some(recorder)) })
     }
 
-    /// Adds the present frame.
+    /// Adds the present frame; nothing once the log is complete: another thread may have completed it since.
     fn record(&self, py: Python<'_>, simulation: &Solver) -> PyResult<()> {
         let mut world = simulation.lock(py)?;
         let world = &mut *world;
-        let mut recorder = self.recorder.lock().unwrap_or_else(PoisonError::into_inner);
-        let Some(recorder) = &mut *recorder else { return Err(errors::other(py, "the recording is finished")) };
         let recorded = py.detach(|| {
+            let mut recorder = self.lock();
+            let Some(recorder) = &mut *recorder else { return Ok(()) };
             let events = std::mem::take(&mut world.unrecorded);
             let snapshot = world.running.snapshot(self.fields);
             let solver = &world.running.solver;
@@ -56,9 +56,15 @@ impl Recorder {
 
     /// Completes the log; returns its number of frames and its size in bytes.
     fn finish(&self, py: Python<'_>) -> PyResult<(u64, u64)> {
-        let recorder = self.recorder.lock().unwrap_or_else(PoisonError::into_inner).take();
-        let Some(recorder) = recorder else { return Ok((0, 0)) };
-        let summary = py.detach(|| recorder.finish()).map_err(|error| errors::record(py, &error))?;
-        Ok((summary.frames, summary.bytes))
+        let finished = py.detach(|| self.lock().take().map(LogRecorder::finish)).transpose();
+        let summary = finished.map_err(|error| errors::record(py, &error))?;
+        Ok(summary.map_or((0, 0), |summary| (summary.frames, summary.bytes)))
+    }
+}
+
+impl Recorder {
+    /// The log being written. Only without the interpreter's lock: who holds this one may be waiting for that one.
+    fn lock(&self) -> MutexGuard<'_, Option<LogRecorder>> {
+        self.recorder.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

@@ -1,8 +1,11 @@
 //! The simulation: what Python steps, looks at and edits.
 
-use std::sync::{Mutex, MutexGuard, TryLockError};
+use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
 
 use numpy::{PyArray1, PyArray2, PyArray3};
+use pyo3::PyTraverseError;
+use pyo3::exceptions::PyValueError;
+use pyo3::gc::PyVisit;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use unipbd_cli::simulation::{Simulation, stage_names};
@@ -10,7 +13,7 @@ use unipbd_core::observe::WallOutline;
 use unipbd_core::{BuildOptions, Phase};
 
 use crate::edit::{Addition, Values};
-use crate::group::{Failure, PythonGroup};
+use crate::group::{Callable, Failure, PythonGroup};
 use crate::picture::Look;
 use crate::state::State;
 use crate::world::{World, severity};
@@ -20,6 +23,8 @@ use crate::{arrays, body, diagnostics, edit, errors, picture, scene};
 #[pyclass(frozen, module = "unipbd._native")]
 pub struct Solver {
     world: Mutex<World>,
+    /// The functions of the groups, for the garbage collector.
+    callables: Mutex<Vec<Callable>>,
 }
 
 impl Solver {
@@ -52,6 +57,7 @@ impl Solver {
         threads: Option<usize>,
         settled: bool,
     ) -> PyResult<Self> {
+        unipbd_cli::instruction_set::from_environment().map_err(PyValueError::new_err)?;
         let scene = scene::from_dict(py, description)?;
         let options = BuildOptions { threads, seed };
         let running = if settled {
@@ -70,7 +76,18 @@ impl Solver {
             failure: Failure::default(),
             order: None,
         };
-        Ok(Solver { world: Mutex::new(world) })
+        Ok(Solver { world: Mutex::new(world), callables: Mutex::new(Vec::new()) })
+    }
+
+    /// A simulation is often in the closure of its own group.
+    fn __traverse__(&self, visit: PyVisit<'_>) -> Result<(), PyTraverseError> {
+        let Ok(callables) = self.callables.try_lock() else { return Ok(()) };
+        callables.iter().try_for_each(|callable| callable.traverse(&visit))
+    }
+
+    fn __clear__(&self) {
+        let callables = self.callables.try_lock().map(|mut callables| std::mem::take(&mut *callables));
+        callables.unwrap_or_default().iter().for_each(Callable::clear);
     }
 
     /// Advances by this many frames.
@@ -90,7 +107,10 @@ impl Solver {
     fn add_group(&self, py: Python<'_>, name: String, project: Py<PyAny>) -> PyResult<()> {
         let mut world = self.lock(py)?;
         let failure = world.failure.clone();
-        world.running.solver.add_group(Box::new(PythonGroup { name, project, failure }));
+        let project = Callable::new(project);
+        self.callables.lock().unwrap_or_else(PoisonError::into_inner).push(project.clone());
+        let speed_limit = world.running.solver.speed_limit();
+        world.running.solver.add_group(Box::new(PythonGroup { name, project, failure, speed_limit }));
         world.has_groups = true;
         Ok(())
     }

@@ -31,10 +31,13 @@ Exit codes:
     3  the scene file has errors
     4  the simulation diverged (the log up to there is kept)
     5  a --stop-on condition was met, or an expectation of a scene does not hold
+  129  the terminal was closed (SIGHUP)
   130  interrupted by Ctrl-C (the frame is finished and the log closed; press twice to quit at once)
+  143  asked to end by SIGTERM, as by kill
 
 Environment:
   UNIPBD_THREADS  number of threads where --threads is not given
+  UNIPBD_SIMD     instruction set: scalar, portable, sse2, avx2, avx512 [default: the fastest]; never changes results
   NO_COLOR        no colours in messages
 
 Examples:
@@ -111,7 +114,7 @@ pub struct CheckArgs {
     #[command(flatten)]
     pub changes: SceneChanges,
     /// Threads of the run that is estimated [default: all]
-    #[arg(long, value_name = "N", help_heading = "Running", env = "UNIPBD_THREADS", hide_env_values = true, value_parser = run::thread_count)]
+    #[arg(long, value_name = "N", help_heading = "Running", allow_negative_numbers = true, value_parser = run::thread_count)]
     pub threads: Option<usize>,
 }
 
@@ -132,7 +135,7 @@ pub struct ExpectArgs {
     #[command(flatten)]
     pub changes: SceneChanges,
     /// Threads to use [default: all]; never changes results
-    #[arg(long, value_name = "N", help_heading = "Running", env = "UNIPBD_THREADS", hide_env_values = true, value_parser = run::thread_count)]
+    #[arg(long, value_name = "N", help_heading = "Running", allow_negative_numbers = true, value_parser = run::thread_count)]
     pub threads: Option<usize>,
 }
 

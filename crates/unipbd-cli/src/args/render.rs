@@ -48,7 +48,7 @@ pub struct RenderArgs {
     #[command(flatten)]
     pub changes: SceneChanges,
     /// Threads to run a scene with [default: all]; never changes results
-    #[arg(long, value_name = "N", help_heading = "Running", env = "UNIPBD_THREADS", hide_env_values = true, allow_negative_numbers = true, value_parser = thread_count)]
+    #[arg(long, value_name = "N", help_heading = "Running", allow_negative_numbers = true, value_parser = thread_count)]
     pub threads: Option<usize>,
 }
 

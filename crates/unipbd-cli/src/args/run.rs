@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::Args;
 
+use unipbd_core::scene::{FRAME_RATES, LONGEST_DURATION};
+
 use super::StopCondition;
 use crate::exit::Failure;
 use crate::record::Fields;
@@ -17,7 +19,7 @@ Examples:
   unipbd run my_scene.toml --stop-on 'density_error>0.05' --stop-on 'time>1.5'
 
 Exit codes: 0 done, 1 input or output, 2 arguments, 3 scene, 4 diverged, 5 --stop-on met or
---expect not held, 130 Ctrl-C.";
+--expect not held, 129 terminal closed, 130 Ctrl-C, 143 SIGTERM.";
 
 /// Changes to a scene.
 #[derive(Clone, Debug, Default, Args)]
@@ -31,13 +33,13 @@ pub struct SceneChanges {
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub overrides: Vec<Override>,
     /// Simulated time [s], instead of that of the scene
-    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = not_negative)]
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true, value_parser = duration)]
     pub duration: Option<f64>,
     /// Output frames per simulated second [1/s], instead of that of the scene
-    #[arg(long, value_name = "RATE", allow_negative_numbers = true, value_parser = positive)]
+    #[arg(long, value_name = "RATE", allow_negative_numbers = true, value_parser = rate)]
     pub fps: Option<f64>,
     /// Seed of every random choice, instead of that of the scene
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = seed)]
     pub seed: Option<u64>,
 }
 
@@ -78,7 +80,7 @@ pub struct RunArgs {
     #[command(flatten)]
     pub changes: SceneChanges,
     /// Threads to use [default: all]; never changes results
-    #[arg(long, value_name = "N", help_heading = "Running", env = "UNIPBD_THREADS", hide_env_values = true, allow_negative_numbers = true, value_parser = thread_count)]
+    #[arg(long, value_name = "N", help_heading = "Running", allow_negative_numbers = true, value_parser = thread_count)]
     pub threads: Option<usize>,
     /// Stop after the first frame in which this holds, with exit code 5; may be repeated
     ///
@@ -101,7 +103,7 @@ pub struct RunArgs {
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Log")]
 pub struct LogArgs {
-    /// The log to write [default: the name of the scene with .mcap, in the current directory]
+    /// The log to write, - for standard output [default: the name of the scene with .mcap, in the current directory]
     ///
     /// The default log replaces an older one when it is complete; a path given here must be new
     /// unless --force is given.
@@ -124,18 +126,28 @@ pub struct LogArgs {
 }
 
 pub(super) fn thread_count(text: &str) -> Result<usize, String> {
-    match text.trim().parse() {
-        Ok(count @ 1..=4096) => Ok(count),
-        _ => Err("expected a whole number from 1 to 4096".into()),
-    }
+    unipbd_core::step::thread_count(text)
 }
 
 pub(super) fn positive(text: &str) -> Result<f64, String> {
     number(text).filter(|value| *value > 0.0).ok_or_else(|| "expected a positive number".into())
 }
 
-fn not_negative(text: &str) -> Result<f64, String> {
-    number(text).filter(|value| *value >= 0.0).ok_or_else(|| "expected a number that is not negative".into())
+fn duration(text: &str) -> Result<f64, String> {
+    let value = positive(text)?;
+    if value > LONGEST_DURATION { Err(format!("expected at most {LONGEST_DURATION} s")) } else { Ok(value) }
+}
+
+fn rate(text: &str) -> Result<f64, String> {
+    let (least, most) = FRAME_RATES;
+    let value = positive(text)?;
+    let fits = (least..=most).contains(&value);
+    if fits { Ok(value) } else { Err(format!("expected a number from {least} to {most}")) }
+}
+
+fn seed(text: &str) -> Result<u64, String> {
+    let seed = text.trim().parse().ok().filter(|seed| *seed <= i64::MAX as u64);
+    seed.ok_or_else(|| format!("expected a whole number from 0 to {}", i64::MAX))
 }
 
 pub(super) fn number(text: &str) -> Option<f64> {

@@ -24,11 +24,11 @@ pub(super) fn bench(arguments: &BenchArgs, console: Console) -> Result<Exit, Fai
     let mut runs = threads.iter().map(|&threads| Timed::new(&loaded, threads)).collect::<Result<Vec<_>, _>>()?;
     let frames = arguments.frames;
     if !step_in_rounds(&mut runs, arguments.warm_up)? {
-        return Ok(Exit::Interrupted);
+        return Ok(interrupt::requested().unwrap_or(Exit::Interrupted));
     }
     runs.iter_mut().for_each(Timed::start);
     if !step_in_rounds(&mut runs, frames)? {
-        return Ok(Exit::Interrupted);
+        return Ok(interrupt::requested().unwrap_or(Exit::Interrupted));
     }
     let results: Vec<Measured> = runs.iter().map(Timed::measured).collect();
     match console.form {
@@ -47,7 +47,7 @@ fn step_in_rounds(runs: &mut [Timed], frames: u64) -> Result<bool, Failure> {
     for begun in (0..frames).step_by(ROUND as usize) {
         for run in &mut *runs {
             for _ in begun..frames.min(begun + ROUND) {
-                if interrupt::requested() {
+                if interrupt::requested().is_some() {
                     return Ok(false);
                 }
                 run.frame().map_err(|error| Failure::new(Exit::Diverged, error.to_string()))?;

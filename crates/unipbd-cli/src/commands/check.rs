@@ -6,7 +6,7 @@ use unipbd_core::scene::{Scene, Substeps};
 
 use super::estimate::{Cost, emitted, particles};
 use super::info::bodies;
-use super::scene::read;
+use super::scene::{read, threads};
 use crate::args::CheckArgs;
 use crate::exit::{Exit, Failure};
 use crate::report::format::{bytes, count, duration, percent, plural};
@@ -26,7 +26,8 @@ pub(super) fn check(arguments: &CheckArgs, console: Console) -> Result<Exit, Fai
         }
         read => read?,
     };
-    let mut simulation = Simulation::new(&loaded.scene, BuildOptions { threads: arguments.threads, seed: None });
+    let mut simulation =
+        Simulation::new(&loaded.scene, BuildOptions { threads: threads(arguments.threads)?, seed: None });
     let cost = Cost::of(&loaded.scene, &mut simulation);
     match console.form {
         Form::Json => console.object(&object(&title(&loaded.scene, &loaded.path), &loaded.scene, &cost))?,

@@ -6,7 +6,7 @@ use std::time::Instant;
 use serde_json::json;
 use unipbd_core::BuildOptions;
 
-use super::scene::load;
+use super::scene::{load, threads};
 use crate::args::ExpectArgs;
 use crate::exit::{Exit, Failure};
 use crate::expect::Watch;
@@ -36,7 +36,8 @@ pub(super) fn expect(arguments: &ExpectArgs, console: Console) -> Result<Exit, F
 fn watch(path: &Path, arguments: &ExpectArgs) -> Result<Verdict, Failure> {
     let start = Instant::now();
     let loaded = load(path, &arguments.changes)?;
-    let mut simulation = Simulation::new(&loaded.scene, BuildOptions { threads: arguments.threads, seed: None });
+    let mut simulation =
+        Simulation::new(&loaded.scene, BuildOptions { threads: threads(arguments.threads)?, seed: None });
     let mut watch = Watch::new(&loaded.scene);
     watch.observe(&simulation.solver);
     let mut diverged = None;

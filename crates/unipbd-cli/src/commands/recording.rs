@@ -1,5 +1,6 @@
 //! The log of a run, from its destination to its completion.
 
+use std::io::IsTerminal;
 use std::path::Path;
 
 use unipbd_core::observe::{Diagnostics, Event};
@@ -8,6 +9,7 @@ use crate::args::LogArgs;
 use crate::exit::{Exit, Failure};
 use crate::record::{Destination, DestinationError, Existing, Fields, Header, RecordError, Recorder};
 use crate::report::summary::LogFile;
+use crate::report::{Console, Form};
 use crate::scene_file::LoadedScene;
 use crate::simulation::Simulation;
 
@@ -20,16 +22,19 @@ pub(super) struct Recording {
 
 impl Recording {
     /// Where the log goes; refuses before anything is run. `None` where none is wanted.
-    pub fn destination(arguments: &LogArgs, scene: &Path) -> Result<Option<Destination>, Failure> {
+    pub fn destination(arguments: &LogArgs, scene: &Path, console: Console) -> Result<Option<Destination>, Failure> {
         if arguments.no_record {
             return Ok(None);
+        }
+        if arguments.output.as_deref() == Some(Path::new("-")) {
+            return to_standard_output(console).map(Some);
         }
         let existing = if arguments.force { Existing::Replace } else { Existing::Refuse };
         let destination = match &arguments.output {
             Some(path) => Destination::explicit(path, existing),
             None => Destination::default_for(scene, Path::new("")),
         };
-        Ok(Some(destination?))
+        Ok(Some(destination?.sparing(scene)?))
     }
 
     /// Opens the log.
@@ -38,7 +43,11 @@ impl Recording {
         simulation: &Simulation,
         loaded: &LoadedScene,
         fields: Fields,
+        console: Console,
     ) -> Result<Self, Failure> {
+        if is_pipe(destination.written()) {
+            console.note(format_args!("waiting for somebody to read {}", destination.written().display()));
+        }
         let header = Header {
             setting: simulation.setting(&loaded.scene, &loaded.path),
             scene_text: loaded.text.clone(),
@@ -47,7 +56,10 @@ impl Recording {
             fps: loaded.scene.fps,
             gravity: loaded.scene.gravity,
         };
-        let recorder = Recorder::create(destination.written(), &header, fields)?;
+        let recorder = match destination.is_standard_output() {
+            true => Recorder::to_writer(std::io::stdout(), "standard output".as_ref(), &header, fields),
+            false => Recorder::create(destination.written(), &header, fields),
+        }?;
         Ok(Recording { recorder, destination, fields })
     }
 
@@ -63,17 +75,46 @@ impl Recording {
         Ok(self.recorder.record(&snapshot, Some(diagnostics), Some(hash), events)?)
     }
 
-    /// Completes the log and puts it in its place.
-    pub fn finish(self) -> Result<LogFile, Failure> {
+    /// Closes the log and puts it in its place: that of an older log only where the run is `whole`.
+    pub fn finish(self, whole: bool, console: Console) -> Result<LogFile, Failure> {
         let summary = self.recorder.finish()?;
-        Ok(LogFile { path: self.destination.commit()?, bytes: summary.bytes })
+        let older = self.destination.target().to_owned();
+        let path = if whole { self.destination.commit()? } else { self.destination.leave()? };
+        if path != older {
+            console.note(format_args!("{} stays; the log of this run is {}", older.display(), path.display()));
+        }
+        Ok(LogFile { path, bytes: summary.bytes })
     }
+}
+
+/// Whether this is a named pipe, which nobody can write to before somebody reads it.
+fn is_pipe(path: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        path.metadata().is_ok_and(|found| found.file_type().is_fifo())
+    }
+    #[cfg(not(unix))]
+    {
+        let _ = path;
+        false
+    }
+}
+
+fn to_standard_output(console: Console) -> Result<Destination, Failure> {
+    if console.form == Form::Json {
+        return Err(Failure::usage("-o - and --json cannot be used together: both write to standard output"));
+    }
+    if std::io::stdout().is_terminal() {
+        return Err(Failure::usage("-o - writes a log, which no terminal shows: direct it to a file or a pipe"));
+    }
+    Ok(Destination::standard_output())
 }
 
 impl From<DestinationError> for Failure {
     fn from(error: DestinationError) -> Self {
         let exit = match error {
-            DestinationError::Exists(_) => Exit::Usage,
+            DestinationError::Exists(_) | DestinationError::IsInput(_) => Exit::Usage,
             _ => Exit::Io,
         };
         Failure::new(exit, error.to_string())

@@ -2,12 +2,12 @@
 
 use unipbd_core::BuildOptions;
 
-use super::scene::load;
+use super::scene::{load, threads};
 use crate::args::{RenderArgs, is_log};
 use crate::exit::{Exit, Failure};
 use crate::interrupt;
 use crate::read::{Log, LogError};
-use crate::record::Fields;
+use crate::record::{Fields, is_input, same_file};
 use crate::render::{
     self, ColorBy, Existing, Output, Range, RenderError, RenderJob, RenderOptions, Rendered, TimeStamp,
 };
@@ -20,6 +20,9 @@ use crate::snapshot::{Setting, Snapshot};
 pub(super) fn render(arguments: &RenderArgs, console: Console) -> Result<Exit, Failure> {
     let mut job = job(arguments);
     refuse_existing(&job)?;
+    if same_file(&arguments.source, &arguments.output) {
+        return Err(Failure::usage(is_input(&arguments.output)));
+    }
     let source = Source::open(arguments)?;
     interrupt::listen();
     let setting = source.setting();
@@ -118,7 +121,7 @@ impl Source {
             return Ok(Source::Log(Box::new(Log::open(&arguments.source)?)));
         }
         let loaded = load(&arguments.source, &arguments.changes)?;
-        let options = BuildOptions { threads: arguments.threads, seed: None };
+        let options = BuildOptions { threads: threads(arguments.threads)?, seed: None };
         Ok(Source::Scene { loaded: Box::new(loaded), options, fields: fields_for(arguments.look.color) })
     }
 
@@ -149,7 +152,10 @@ impl Source {
                 at_start: true,
             }),
         };
-        Ok(Box::new(frames.map(|frame| if interrupt::requested() { Err(interrupted()) } else { frame })))
+        Ok(Box::new(frames.map(|frame| match interrupt::requested() {
+            Some(exit) => Err(Failure::new(exit, "interrupted")),
+            None => frame,
+        })))
     }
 
     /// A scene has every column that its materials have, so no flag helps.
@@ -191,10 +197,6 @@ fn fields_for(color: ColorBy) -> Fields {
         ColorBy::Density => Fields { density: true, ..none },
         ColorBy::Temperature => Fields { temperature: true, ..none },
     }
-}
-
-fn interrupted() -> Failure {
-    Failure::new(Exit::Interrupted, "interrupted")
 }
 
 impl From<LogError> for Failure {

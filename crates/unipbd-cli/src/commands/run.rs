@@ -4,7 +4,7 @@ use unipbd_core::observe::{Diagnostics, Event};
 use unipbd_core::{BuildOptions, SolverError};
 
 use super::recording::Recording;
-use super::scene::load;
+use super::scene::{load, threads};
 use crate::args::{RunArgs, StopCondition};
 use crate::exit::{Exit, Failure};
 use crate::expect::Watch;
@@ -16,16 +16,17 @@ use crate::scene_file::LoadedScene;
 use crate::simulation::{Simulation, stage_names, title};
 
 pub(super) fn run(arguments: &RunArgs, console: Console) -> Result<Exit, Failure> {
-    let destination = Recording::destination(&arguments.log, &arguments.scene)?;
+    let destination = Recording::destination(&arguments.log, &arguments.scene, console)?;
     let loaded = load(&arguments.scene, &arguments.changes)?;
-    interrupt::listen();
     let statistics = Statistics::start();
-    let options = BuildOptions { threads: arguments.threads, seed: None };
+    let options = BuildOptions { threads: threads(arguments.threads)?, seed: None };
     let simulation = Simulation::new(&loaded.scene, options);
     announce(&simulation, &loaded, console);
     let recording = destination
-        .map(|destination| Recording::start(destination, &simulation, &loaded, arguments.log.fields))
+        .map(|destination| Recording::start(destination, &simulation, &loaded, arguments.log.fields, console))
         .transpose()?;
+    // Not before: a pipe that nobody reads is waited for, and a signal then ends the process.
+    interrupt::listen();
     let progress = Progress::new(console, simulation.frames, loaded.scene.duration);
     let watch = arguments.expect.then(|| Watch::new(&loaded.scene));
     let mut run = Run { watch, simulation, recording, statistics, progress, console, conditions: &arguments.stop_on };
@@ -50,7 +51,7 @@ impl Run<'_> {
     fn until_end(&mut self) -> Result<(Outcome, Option<Diagnostics>), Failure> {
         let mut diagnostics = self.observe()?;
         loop {
-            if interrupt::requested() {
+            if interrupt::requested().is_some() {
                 return Ok((Outcome::Interrupted, diagnostics));
             }
             match self.simulation.next_frame() {
@@ -117,7 +118,8 @@ impl Run<'_> {
 
     /// Closes the log, prints the summary and says how it ended.
     fn close(mut self, ended: Result<(Outcome, Option<Diagnostics>), Failure>, scene: String) -> Result<Exit, Failure> {
-        let log = self.recording.take().map(Recording::finish).transpose();
+        let whole = matches!(&ended, Ok((Outcome::Completed | Outcome::ConditionMet { .. }, _)));
+        let log = self.recording.take().map(|recording| recording.finish(whole, self.console)).transpose();
         let (outcome, last) = ended?;
         let log: Option<LogFile> = log?;
         let completed = matches!(outcome, Outcome::Completed);
@@ -127,8 +129,13 @@ impl Run<'_> {
             _ => exit_of(&outcome),
         };
         if let Some(last) = last {
+            let to_output = !log.as_ref().is_some_and(LogFile::is_standard_output);
             let solver = &self.simulation.solver;
-            summarize(&Summary::new(scene, outcome.clone(), self.statistics, solver, last, log), self.console)?;
+            summarize(
+                &Summary::new(scene, outcome.clone(), self.statistics, solver, last, log),
+                self.console,
+                to_output,
+            )?;
         }
         match &outcome {
             Outcome::Diverged { message } => self.console.error(message),
@@ -141,12 +148,15 @@ impl Run<'_> {
     }
 }
 
-fn summarize(summary: &Summary, console: Console) -> std::io::Result<()> {
+/// Standard output is for data: where the log goes there, the summary is a message.
+fn summarize(summary: &Summary, console: Console, to_output: bool) -> std::io::Result<()> {
     match console.form {
-        Form::Json => console.object(&summary.line()),
-        Form::Text if console.verbosity > Verbosity::Quiet => console.line(summary.text(console.verbosity)),
-        Form::Text => Ok(()),
+        Form::Text if !to_output => console.note(summary.text(console.verbosity)),
+        Form::Json => console.object(&summary.line())?,
+        Form::Text if console.verbosity > Verbosity::Quiet => console.line(summary.text(console.verbosity))?,
+        Form::Text => {}
     }
+    Ok(())
 }
 
 fn exit_of(outcome: &Outcome) -> Exit {
@@ -154,7 +164,7 @@ fn exit_of(outcome: &Outcome) -> Exit {
         Outcome::Completed => Exit::Success,
         Outcome::Diverged { .. } => Exit::Diverged,
         Outcome::ConditionMet { .. } => Exit::ConditionMet,
-        Outcome::Interrupted => Exit::Interrupted,
+        Outcome::Interrupted => interrupt::requested().unwrap_or(Exit::Interrupted),
     }
 }
 

@@ -19,6 +19,14 @@ pub(super) fn read(path: &Path, changes: &SceneChanges) -> Result<Result<LoadedS
     Ok(scene_file::load(path, &changes.all()?))
 }
 
+/// The number of threads of a run: the argument, or what the environment says.
+pub(super) fn threads(given: Option<usize>) -> Result<Option<usize>, Failure> {
+    match given {
+        Some(count) => Ok(Some(count)),
+        None => crate::threads::wanted(None).map_err(Failure::usage),
+    }
+}
+
 impl From<SceneFileError> for Failure {
     fn from(error: SceneFileError) -> Self {
         let exit = match error {

@@ -6,7 +6,7 @@ use unipbd_core::observe::{Event, Severity};
 use unipbd_core::phase::{MaterialIndex, Phase};
 use unipbd_core::rigid::{Body, BodyKind, CollisionFilter, Surface};
 
-use super::Frame;
+use super::{Frame, guard};
 use crate::record::schema::{Bodies, BodyShape, BodyState, ParticleColumns};
 use crate::record::{Level, Log, POINT_STRIDE, PointCloud, Topic, kind_name, read_diagnostics, unpack_position};
 use crate::snapshot::Snapshot;
@@ -40,6 +40,7 @@ impl Assembler {
 
     /// Adds a message; returns the frame that it completes. Errors say what is wrong.
     pub(crate) fn add(&mut self, topic: Topic, time: u64, data: &[u8]) -> Result<Option<Frame>, String> {
+        guard::check(topic, data)?;
         match topic {
             Topic::Particles => return self.complete(time, &decode(topic, data)?).map(Some),
             Topic::Columns => self.take_columns(decode(topic, data)?)?,

@@ -1,10 +1,8 @@
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use mcap::records::Record;
-
 use super::assemble::Assembler;
+use super::record::Record;
 use super::records::Records;
 use super::{Frame, LogError};
 use crate::record::Topic;
@@ -18,7 +16,7 @@ struct Channel {
 
 /// The frames of a log, one by one. Ends after the first error.
 pub struct Frames {
-    records: Records<File>,
+    records: Records,
     path: PathBuf,
     channels: BTreeMap<u16, Channel>,
     assembler: Assembler,
@@ -26,7 +24,7 @@ pub struct Frames {
 }
 
 impl Frames {
-    pub(crate) fn new(records: Records<File>, path: &Path, materials: usize) -> Self {
+    pub(crate) fn new(records: Records, path: &Path, materials: usize) -> Self {
         let assembler = Assembler::new(materials);
         Frames { records, path: path.to_owned(), channels: BTreeMap::new(), assembler, failed: false }
     }
@@ -40,17 +38,17 @@ impl Frames {
     fn read_frame(&mut self) -> Result<Option<Frame>, LogError> {
         while let Some(record) = self.records.next()? {
             match record {
-                Record::Channel(channel) => {
-                    if let Some(topic) = Topic::from_name(&channel.topic) {
-                        self.channels.entry(channel.id).or_insert(Channel { topic, messages: 0 });
+                Record::Channel { id, topic } => {
+                    if let Some(topic) = Topic::from_name(&topic) {
+                        self.channels.entry(id).or_insert(Channel { topic, messages: 0 });
                     }
                 }
-                Record::Message { header, data } => {
-                    let Some(channel) = self.channels.get_mut(&header.channel_id) else { continue };
+                Record::Message { channel, sequence, time, data } => {
+                    let Some(channel) = self.channels.get_mut(&channel) else { continue };
                     let number = channel.messages;
                     channel.messages = number.wrapping_add(1);
-                    let frame = if header.sequence == number {
-                        self.assembler.add(channel.topic, header.log_time, &data)
+                    let frame = if sequence == number {
+                        self.assembler.add(channel.topic, time, data)
                     } else {
                         Err(format!("messages on {} are missing", channel.topic.name()))
                     };

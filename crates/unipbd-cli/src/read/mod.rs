@@ -4,20 +4,24 @@
 //! frames up to the cut.
 
 mod assemble;
+mod chunk;
 mod error;
 mod frames;
+mod guard;
+mod record;
 mod records;
 mod summary;
+mod wire;
 
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::{Path, PathBuf};
 
-use mcap::records::Record;
 use unipbd_core::observe::{Diagnostics, Event};
 
-use crate::record::{Fields, Header, METADATA, SCENE_ATTACHMENT};
+use crate::record::{Fields, Header, LOG_FORMAT, METADATA, SCENE_ATTACHMENT, log_format};
 use crate::snapshot::{Setting, Snapshot};
+pub(crate) use record::Record;
 pub(crate) use records::Records;
 
 pub use error::LogError;
@@ -52,6 +56,11 @@ impl Log {
     pub fn open(path: &Path) -> Result<Log, LogError> {
         let file = File::open(path).map_err(|cause| LogError::io(path, cause))?;
         let (scene, metadata) = read_opening(path, Records::new(file, path)?)?;
+        let format = log_format(&metadata).map_err(|reason| LogError::damaged(path, reason))?;
+        if format > LOG_FORMAT {
+            let version = metadata.get("version").cloned().unwrap_or_default();
+            return Err(LogError::Newer { path: path.to_owned(), format, version });
+        }
         let scene_text = String::from_utf8(scene).map_err(|_| LogError::damaged(path, "its scene is not UTF-8"))?;
         let (header, fields) =
             Header::from_metadata(&metadata, scene_text).map_err(|reason| LogError::damaged(path, reason))?;
@@ -101,15 +110,13 @@ impl Log {
 }
 
 /// Scene and metadata, which stand before all messages.
-fn read_opening(path: &Path, mut records: Records<File>) -> Result<(Vec<u8>, BTreeMap<String, String>), LogError> {
+fn read_opening(path: &Path, mut records: Records) -> Result<(Vec<u8>, BTreeMap<String, String>), LogError> {
     let (mut scene, mut metadata) = (None, None);
     while scene.is_none() || metadata.is_none() {
         match records.next()? {
-            Some(Record::Attachment { header, data, .. }) if header.name == SCENE_ATTACHMENT => {
-                scene = Some(data.into_owned());
-            }
-            Some(Record::Metadata(record)) if record.name == METADATA => metadata = Some(record.metadata),
-            None | Some(Record::Schema { .. } | Record::Channel(_) | Record::Message { .. }) => break,
+            Some(Record::Attachment { name, data }) if name == SCENE_ATTACHMENT => scene = Some(data.to_vec()),
+            Some(Record::Metadata { name, entries }) if name == METADATA => metadata = Some(entries),
+            None | Some(Record::Schema | Record::Channel { .. } | Record::Message { .. }) => break,
             Some(_) => {}
         }
     }

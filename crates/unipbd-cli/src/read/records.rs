@@ -1,26 +1,31 @@
 use std::fs::File;
-use std::io::{self, Read, Seek, SeekFrom};
+use std::io::{self, BufReader, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
 
-use mcap::records::{Record, op};
-use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
-use mcap::{MAGIC, McapError};
-
 use super::LogError;
+use super::chunk::{unpack, unpacked_bound};
+use super::record::{Record, op};
 
-/// Largest record or unpacked chunk that is believed [bytes]: ten million particles fit.
-const RECORD_LIMIT: usize = 1 << 30;
-/// Bytes read at a time, however many a record claims to have.
-const READ_SIZE: usize = 1 << 20;
-const CHECKSUM_SIZE: usize = 4;
+/// The first and the last bytes of a whole log.
+pub(super) const MAGIC: [u8; 8] = *b"\x89MCAP0\r\n";
+/// Kind and length of a record.
+const PREFIX: usize = 9;
 
-/// The records of a log from its start, chunks unpacked and checked.
-pub(crate) struct Records<R> {
-    source: R,
+/// The records of a log from its start, chunks unpacked and checked. Memory is bounded by the size of the file times a
+/// constant, whatever lengths are in it.
+pub(crate) struct Records {
+    source: BufReader<File>,
     path: PathBuf,
-    reader: LinearReader,
+    /// Size of the file, and how much of it is not read yet [bytes].
+    size: u64,
+    left: u64,
+    /// Checksum of what was read, for the end of the data.
+    sum: crc32fast::Hasher,
     /// Body of the record last read.
     body: Vec<u8>,
+    /// The records of the chunk last read, and where the next of them is.
+    chunk: Vec<u8>,
+    place: usize,
     /// Whether the file ends as a whole log does.
     whole: bool,
     end: Option<End>,
@@ -33,7 +38,29 @@ enum End {
     Failed,
 }
 
-impl Records<File> {
+/// A record that was found: in the chunk, or in `body`.
+enum Found {
+    InChunk(u8, std::ops::Range<usize>),
+    InFile(u8),
+    /// There is nothing more.
+    Nothing,
+}
+
+/// Why a record cannot be read.
+enum Fault {
+    Io(io::Error),
+    /// The file ends within it.
+    Cut,
+    Wrong(String),
+}
+
+impl From<io::Error> for Fault {
+    fn from(error: io::Error) -> Self {
+        if error.kind() == io::ErrorKind::UnexpectedEof { Fault::Cut } else { Fault::Io(error) }
+    }
+}
+
+impl Records {
     /// Starts at the beginning of a file.
     pub(crate) fn new(mut file: File, path: &Path) -> Result<Self, LogError> {
         let fail = |cause| LogError::io(path, cause);
@@ -42,29 +69,16 @@ impl Records<File> {
         if magic != MAGIC {
             return Err(LogError::foreign(path, "it is no MCAP file"));
         }
-        let whole = ends_with_magic(&mut file).map_err(fail)?;
-        file.rewind().map_err(fail)?;
-        let options = LinearReaderOptions::default()
-            .with_prevalidate_chunk_crcs(true)
-            .with_validate_data_section_crc(true)
-            .with_record_length_limit(RECORD_LIMIT);
-        let reader = LinearReader::new_with_options(options);
-        Ok(Records { source: file, path: path.to_owned(), reader, body: Vec::new(), whole, end: None })
+        let size = file.seek(SeekFrom::End(0)).map_err(fail)?;
+        let whole = ends_with_magic(&mut file, size).map_err(fail)?;
+        file.seek(SeekFrom::Start(MAGIC.len() as u64)).map_err(fail)?;
+        let mut sum = crc32fast::Hasher::new();
+        sum.update(&MAGIC);
+        let (source, left) = (BufReader::with_capacity(1 << 18, file), size - MAGIC.len() as u64);
+        let (body, chunk) = (Vec::new(), Vec::new());
+        Ok(Records { source, path: path.to_owned(), size, left, sum, body, chunk, place: 0, whole, end: None })
     }
-}
 
-fn ends_with_magic(file: &mut File) -> io::Result<bool> {
-    let length = file.seek(SeekFrom::End(0))?;
-    if length < 2 * MAGIC.len() as u64 {
-        return Ok(false);
-    }
-    let mut magic = [0; MAGIC.len()];
-    file.seek(SeekFrom::End(-(MAGIC.len() as i64)))?;
-    file.read_exact(&mut magic)?;
-    Ok(magic == *MAGIC)
-}
-
-impl<R: Read> Records<R> {
     /// Whether the records ended where the file is cut off.
     pub(crate) fn truncated(&self) -> bool {
         self.end == Some(End::Truncated)
@@ -75,52 +89,101 @@ impl<R: Read> Records<R> {
         if self.end.is_some() {
             return Ok(None);
         }
-        let opcode = match self.advance() {
-            Ok(Some(opcode)) => opcode,
-            Ok(None) | Err(McapError::UnexpectedEof) if !self.whole => return Ok(self.stop(End::Truncated)),
-            Ok(None) => return Err(self.fail("it ends too early")),
-            Err(McapError::Io(cause)) if cause.raw_os_error().is_some() => {
+        let (opcode, range) = match self.advance() {
+            Ok(Found::InChunk(opcode, range)) => (opcode, Some(range)),
+            Ok(Found::InFile(op::DATA_END)) => return self.finish(),
+            Ok(Found::InFile(opcode)) => (opcode, None),
+            Ok(Found::Nothing) | Err(Fault::Cut) if !self.whole => {
+                self.end = Some(End::Truncated);
+                return Ok(None);
+            }
+            Ok(Found::Nothing) | Err(Fault::Cut) => return Err(self.fail("it ends too early")),
+            Err(Fault::Wrong(reason)) => return Err(self.fail(reason)),
+            Err(Fault::Io(cause)) => {
                 self.end = Some(End::Failed);
                 return Err(LogError::io(&self.path, cause));
             }
-            Err(error) => return Err(self.fail(error.to_string())),
         };
-        match opcode {
-            op::DATA_END => return Ok(self.stop(End::Complete)),
-            // The parser trusts the lengths in an attachment: check its sum before.
-            op::ATTACHMENT if !attachment_is_sound(&self.body) => return Err(self.fail("its scene is damaged")),
-            _ => {}
-        }
-        match mcap::parse_record(opcode, &self.body) {
-            Ok(record) => Ok(Some(record)),
-            Err(error) => {
+        let body = range.map_or(&self.body[..], |range| &self.chunk[range]);
+        match Record::parse(opcode, body) {
+            Some(record) => Ok(Some(record)),
+            None => {
                 self.end = Some(End::Failed);
-                Err(LogError::damaged(&self.path, error.to_string()))
+                let what = if opcode == op::ATTACHMENT { "its scene" } else { "a record in it" };
+                Err(LogError::damaged(&self.path, format!("{what} is damaged")))
             }
         }
     }
 
-    /// Reads the next record into `body` and returns its kind.
-    fn advance(&mut self) -> Result<Option<u8>, McapError> {
-        while let Some(event) = self.reader.next_event() {
-            match event? {
-                LinearReadEvent::Record { data, opcode } => {
-                    self.body.clear();
-                    self.body.extend_from_slice(data);
-                    return Ok(Some(opcode));
+    /// Finds the next record: in the chunk, while there are any.
+    fn advance(&mut self) -> Result<Found, Fault> {
+        loop {
+            if self.place < self.chunk.len() {
+                return self.next_in_chunk();
+            }
+            if self.left == 0 {
+                return Ok(Found::Nothing);
+            }
+            let before = self.sum.clone();
+            let opcode = self.read_record()?;
+            match opcode {
+                op::CHUNK => {
+                    self.chunk = unpack(&self.body, unpacked_bound(self.size)).map_err(Fault::Wrong)?;
+                    self.place = 0;
                 }
-                LinearReadEvent::ReadRequest(need) => {
-                    let read = read_some(&mut self.source, self.reader.insert(need.clamp(1, READ_SIZE)))?;
-                    self.reader.notify_read(read);
+                op::DATA_END => {
+                    self.sum = before;
+                    return Ok(Found::InFile(opcode));
                 }
+                _ => return Ok(Found::InFile(opcode)),
             }
         }
-        Ok(None)
     }
 
-    fn stop<T>(&mut self, end: End) -> Option<T> {
-        self.end = Some(end);
-        None
+    fn next_in_chunk(&mut self) -> Result<Found, Fault> {
+        let short = || Fault::Wrong("a record in a chunk ends too early".to_owned());
+        let rest = &self.chunk[self.place..];
+        let prefix: &[u8; PREFIX] = rest.first_chunk().ok_or_else(short)?;
+        let [opcode, length @ ..] = *prefix;
+        let length = usize::try_from(u64::from_le_bytes(length)).ok();
+        let length = length.filter(|length| *length <= rest.len() - PREFIX).ok_or_else(short)?;
+        let start = self.place + PREFIX;
+        self.place = start + length;
+        Ok(Found::InChunk(opcode, start..start + length))
+    }
+
+    /// Reads a record of the file into `body` and returns its kind.
+    fn read_record(&mut self) -> Result<u8, Fault> {
+        let mut prefix = [0; PREFIX];
+        self.source.read_exact(&mut prefix)?;
+        let [opcode, length @ ..] = prefix;
+        let length = u64::from_le_bytes(length);
+        self.left = self.left.saturating_sub(PREFIX as u64);
+        if length > self.left {
+            return Err(Fault::Cut);
+        }
+        self.body.clear();
+        let read = self.source.by_ref().take(length).read_to_end(&mut self.body)?;
+        self.left -= length;
+        if (read as u64) < length {
+            return Err(Fault::Cut);
+        }
+        self.sum.update(&prefix);
+        self.sum.update(&self.body);
+        Ok(opcode)
+    }
+
+    /// The end of the data: its checksum counts, where there is one.
+    fn finish(&mut self) -> Result<Option<Record<'_>>, LogError> {
+        let sum = self.sum.clone().finalize();
+        match self.body.first_chunk().map(|sum| u32::from_le_bytes(*sum)) {
+            None => Err(self.fail("it ends too early")),
+            Some(saved) if saved != 0 && saved != sum => Err(self.fail("the checksum of its data does not match")),
+            Some(_) => {
+                self.end = Some(End::Complete);
+                Ok(None)
+            }
+        }
     }
 
     fn fail(&mut self, reason: impl Into<String>) -> LogError {
@@ -129,17 +192,12 @@ impl<R: Read> Records<R> {
     }
 }
 
-fn read_some(source: &mut impl Read, buffer: &mut [u8]) -> io::Result<usize> {
-    loop {
-        match source.read(buffer) {
-            Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
-            other => return other,
-        }
+fn ends_with_magic(file: &mut File, size: u64) -> io::Result<bool> {
+    if size < 2 * MAGIC.len() as u64 {
+        return Ok(false);
     }
-}
-
-/// Whether the checksum at the end of an attachment is that of the bytes before it.
-fn attachment_is_sound(body: &[u8]) -> bool {
-    let Some((bytes, checksum)) = body.split_last_chunk::<CHECKSUM_SIZE>() else { return false };
-    u32::from_le_bytes(*checksum) == crc32fast::hash(bytes)
+    let mut magic = [0; MAGIC.len()];
+    file.seek(SeekFrom::End(-(MAGIC.len() as i64)))?;
+    file.read_exact(&mut magic)?;
+    Ok(magic == MAGIC)
 }

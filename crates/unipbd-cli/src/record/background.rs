@@ -6,8 +6,9 @@ use super::encode::EncodedFrame;
 use super::error::mcap_cause;
 use super::writer::{LogWriter, Totals};
 
-/// Frames that may wait for the writer: a run that is killed loses at most these.
-const WAITING_FRAMES: usize = 2;
+/// Frames that may wait for the writer. None: a frame is handed over once the one before is written, so that a run that
+/// is killed loses at most one of those that it has told of.
+const WAITING_FRAMES: usize = 0;
 
 /// Compresses and writes frames on a thread of its own, in the order they come.
 pub(crate) struct Background {
@@ -19,7 +20,7 @@ pub(crate) struct Background {
 impl Background {
     pub(crate) fn start<W: Write + Send + 'static>(writer: LogWriter<W>) -> io::Result<Self> {
         let (frames, incoming) = sync_channel(WAITING_FRAMES);
-        // Never full: at most the waiting frames, one being written and one being encoded exist.
+        // Never full: at most one frame being written and one being encoded exist.
         let (done, spent) = sync_channel(WAITING_FRAMES + 2);
         let worker = std::thread::Builder::new()
             .name("log writer".to_owned())

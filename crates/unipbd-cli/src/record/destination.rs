@@ -6,13 +6,17 @@
 //! | `-o FILE` | no | `FILE` itself | - |
 //! | `-o FILE` | a file | refused without `--force` | - |
 //! | `-o FILE --force` | a file | `.FILE.partial` beside it | when complete |
-//! | `-o FILE --force` | a device or a pipe | `FILE` itself | - |
+//! | `-o FILE` | a device or a pipe | `FILE` itself | - |
+//! | `-o -` | | standard output | - |
 //!
-//! After a crash the partial file stays, readable up to its last frame; the next run to the same
-//! output starts it anew.
+//! The scene itself is never an output, by any name. A log that is not complete replaces none: where a run is
+//! interrupted or diverges and there is an older log, the new one is left beside it as `FILE.partial.mcap`. After a crash
+//! the partial file stays, readable up to its last frame; the next run to the same output starts it anew.
 
 use std::path::{Path, PathBuf};
 use std::{fmt, fs, io};
+
+use super::same_file::same_file;
 
 /// What to do with a file that is already where a log shall go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,6 +32,8 @@ pub enum Existing {
 pub struct Destination {
     target: PathBuf,
     written: PathBuf,
+    /// Whether the log goes to standard output.
+    to_output: bool,
 }
 
 /// A destination that cannot be used.
@@ -36,6 +42,8 @@ pub struct Destination {
 pub enum DestinationError {
     /// There is a file already, and it may not be replaced: an error of usage.
     Exists(PathBuf),
+    /// The output is the input: an error of usage.
+    IsInput(PathBuf),
     /// The file system refuses.
     Io(PathBuf, io::Error),
 }
@@ -46,6 +54,7 @@ impl fmt::Display for DestinationError {
             DestinationError::Exists(path) => {
                 write!(f, "{} exists already: choose another name or add --force", path.display())
             }
+            DestinationError::IsInput(path) => f.write_str(&is_input(path)),
             DestinationError::Io(path, cause) => write!(f, "cannot write the log {}: {cause}", path.display()),
         }
     }
@@ -54,13 +63,40 @@ impl fmt::Display for DestinationError {
 impl std::error::Error for DestinationError {
     fn source(&self) -> Option<&(dyn std::error::Error + 'static)> {
         match self {
-            DestinationError::Exists(_) => None,
+            DestinationError::Exists(_) | DestinationError::IsInput(_) => None,
             DestinationError::Io(_, cause) => Some(cause),
         }
     }
 }
 
+/// What to say of an output that would replace its input.
+pub fn is_input(path: &Path) -> String {
+    format!("{} is the input itself: choose another name for the output", path.display())
+}
+
 impl Destination {
+    /// Standard output.
+    pub fn standard_output() -> Destination {
+        let name = PathBuf::from("-");
+        Destination { target: name.clone(), written: name, to_output: true }
+    }
+
+    /// Whether the log goes to standard output.
+    pub fn is_standard_output(&self) -> bool {
+        self.to_output
+    }
+
+    /// The same, unless it would replace this file.
+    pub fn sparing(self, input: &Path) -> Result<Destination, DestinationError> {
+        let hit = !self.to_output && (same_file(&self.target, input) || same_file(&self.written, input));
+        if hit { Err(DestinationError::IsInput(self.target)) } else { Ok(self) }
+    }
+
+    /// A file or a device that is written to as it is.
+    fn in_place(path: &Path) -> Destination {
+        Destination { target: path.to_owned(), written: path.to_owned(), to_output: false }
+    }
+
     /// The default: `<scene>.mcap` in `directory`, replaced when the new log is complete.
     pub fn default_for(scene: &Path, directory: &Path) -> Result<Destination, DestinationError> {
         let stem = scene.file_stem().unwrap_or("scene".as_ref());
@@ -74,7 +110,7 @@ impl Destination {
         let found = match fs::metadata(path) {
             Ok(found) => found,
             Err(error) if error.kind() == io::ErrorKind::NotFound => {
-                return Ok(Destination { target: path.to_owned(), written: path.to_owned() });
+                return Ok(Destination::in_place(path));
             }
             Err(error) => return Err(DestinationError::Io(path.to_owned(), error)),
         };
@@ -82,11 +118,11 @@ impl Destination {
             let cause = io::Error::new(io::ErrorKind::IsADirectory, "it is a directory");
             return Err(DestinationError::Io(path.to_owned(), cause));
         }
+        if !found.is_file() {
+            return Ok(Destination::in_place(path));
+        }
         if existing == Existing::Refuse {
             return Err(DestinationError::Exists(path.to_owned()));
-        }
-        if !found.is_file() {
-            return Ok(Destination { target: path.to_owned(), written: path.to_owned() });
         }
         // A link stays a link: what it points to is replaced.
         let target = fs::canonicalize(path).map_err(|error| DestinationError::Io(path.to_owned(), error))?;
@@ -102,7 +138,7 @@ impl Destination {
         partial.push(name);
         partial.push(".partial");
         let written = target.with_file_name(partial);
-        Ok(Destination { target, written })
+        Ok(Destination { target, written, to_output: false })
     }
 
     /// Where the log is written to: the path to give to [`Recorder::create`](super::Recorder::create).
@@ -113,6 +149,16 @@ impl Destination {
     /// Where the complete log will be.
     pub fn target(&self) -> &Path {
         &self.target
+    }
+
+    /// Leaves a log that is not complete: in its place where that is free, beside an older log where there is one.
+    pub fn leave(mut self) -> Result<PathBuf, DestinationError> {
+        if self.written != self.target && self.target.exists() {
+            let mut name = self.target.file_stem().unwrap_or_default().to_owned();
+            name.push(".partial.mcap");
+            self.target.set_file_name(name);
+        }
+        self.commit()
     }
 
     /// Puts the complete log in its place.
@@ -164,6 +210,38 @@ mod tests {
     }
 
     #[test]
+    fn the_input_is_no_destination_by_any_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let (scene, hard) = (folder.path().join("scene.toml"), folder.path().join("hard.mcap"));
+        fs::write(&scene, "scene").unwrap();
+        fs::hard_link(&scene, &hard).unwrap();
+        for path in [&scene, &hard, &folder.path().join(".").join("scene.toml")] {
+            let destination = Destination::explicit(path, Existing::Replace).unwrap();
+            let refused = destination.sparing(&scene).unwrap_err();
+            assert!(refused.to_string().contains("is the input itself"), "{refused}");
+        }
+        assert!(
+            Destination::explicit(&folder.path().join("new.mcap"), Existing::Refuse).unwrap().sparing(&scene).is_ok()
+        );
+    }
+
+    #[test]
+    fn a_partial_log_is_left_beside_an_older_one() {
+        let folder = tempfile::tempdir().unwrap();
+        let target = folder.path().join("run.mcap");
+        let left = |text: &str| {
+            let destination = Destination::default_for("run.toml".as_ref(), folder.path()).unwrap();
+            fs::write(destination.written(), text).unwrap();
+            destination.leave().unwrap()
+        };
+        assert_eq!(left("first"), target);
+        assert_eq!(left("second"), folder.path().join("run.partial.mcap"));
+        assert_eq!(left("third"), folder.path().join("run.partial.mcap"));
+        assert_eq!(fs::read_to_string(target).unwrap(), "first");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 2);
+    }
+
+    #[test]
     fn directories_are_no_destination() {
         let folder = tempfile::tempdir().unwrap();
         let refused = Destination::explicit(folder.path(), Existing::Replace).unwrap_err();
@@ -173,7 +251,7 @@ mod tests {
     #[cfg(unix)]
     #[test]
     fn devices_are_written_in_place_and_links_are_followed() {
-        let device = Destination::explicit("/dev/null".as_ref(), Existing::Replace).unwrap();
+        let device = Destination::explicit("/dev/null".as_ref(), Existing::Refuse).unwrap();
         assert_eq!(device.written(), Path::new("/dev/null"));
         let folder = tempfile::tempdir().unwrap();
         let (file, link) = (folder.path().join("file.mcap"), folder.path().join("link.mcap"));

@@ -12,6 +12,13 @@ use crate::snapshot::Setting;
 
 /// Name of the metadata record of a log.
 pub(crate) const METADATA: &str = "unipbd";
+/// Version of the format of logs: it is raised when an older reader would misread a log.
+///
+/// Logs of this version and of all before are read, newer ones are refused. Logs without the entry are of version 1;
+/// what a reader does not know (topics, fields, entries) it passes over, so that additions raise nothing.
+pub(crate) const LOG_FORMAT: u32 = 1;
+/// The entry of the metadata with that version.
+const FORMAT_ENTRY: &str = "log_format";
 /// Name of the attachment that holds the scene.
 pub(crate) const SCENE_ATTACHMENT: &str = "scene.toml";
 
@@ -53,6 +60,7 @@ impl Header {
         let walls: Vec<WallEntry> = self.setting.walls.iter().map(WallEntry::from).collect();
         let mut entries = BTreeMap::from([
             ("version", env!("CARGO_PKG_VERSION").to_owned()),
+            (FORMAT_ENTRY, LOG_FORMAT.to_string()),
             ("name", self.setting.name.clone()),
             ("scene_sha256", self.scene_sha256()),
             ("overrides", json(&self.overrides)),
@@ -96,6 +104,11 @@ impl Header {
         };
         Ok((header, entries.parse("fields")?))
     }
+}
+
+/// Version of the format of a log.
+pub(crate) fn log_format(entries: &BTreeMap<String, String>) -> Result<u32, String> {
+    if entries.contains_key(FORMAT_ENTRY) { Entries(entries).parse(FORMAT_ENTRY) } else { Ok(1) }
 }
 
 /// The entries of a metadata record, with errors that name them.

@@ -26,6 +26,7 @@ mod header;
 mod messages;
 mod quantity_message;
 mod quantity_schema;
+mod same_file;
 pub mod schema;
 mod shapes;
 mod topic;
@@ -42,13 +43,14 @@ use background::Background;
 use encode::Encoder;
 use writer::LogWriter;
 
-pub use destination::{Destination, DestinationError, Existing};
+pub use destination::{Destination, DestinationError, Existing, is_input};
 pub use error::RecordError;
 pub use fields::{Fields, UnknownField};
 pub use header::Header;
+pub use same_file::same_file;
 
 pub(crate) use body_message::kind_name;
-pub(crate) use header::{METADATA, SCENE_ATTACHMENT};
+pub(crate) use header::{LOG_FORMAT, METADATA, SCENE_ATTACHMENT, log_format};
 pub(crate) use messages::{Level, Log, POINT_STRIDE, PointCloud, unpack_position};
 pub(crate) use quantity_message::read_diagnostics;
 pub(crate) use topic::Topic;

@@ -6,6 +6,7 @@ use std::io::{self, Write};
 use anstyle::{AnsiColor, Style};
 use serde::Serialize;
 
+use super::clean::clean;
 use crate::args::OutputArgs;
 
 /// How many messages are printed.
@@ -53,7 +54,7 @@ impl Console {
 
     /// Prints an error, always.
     pub fn error(&self, message: impl Display) {
-        to_stderr(format_args!("{ERROR}error:{ERROR:#} {message}"));
+        to_stderr(format_args!("{ERROR}error:{ERROR:#} {}", shown(message)));
     }
 
     /// Prints an error that says itself what it is, always.
@@ -64,26 +65,30 @@ impl Console {
     /// Prints a warning unless quiet.
     pub fn warning(&self, message: impl Display) {
         if self.verbosity > Verbosity::Quiet {
-            to_stderr(format_args!("{WARNING}warning:{WARNING:#} {message}"));
+            to_stderr(format_args!("{WARNING}warning:{WARNING:#} {}", shown(message)));
         }
     }
 
     /// Prints a message unless quiet.
     pub fn note(&self, message: impl Display) {
         if self.verbosity > Verbosity::Quiet {
-            to_stderr(format_args!("{message}"));
+            to_stderr(format_args!("{}", shown(message)));
         }
     }
 
     /// Prints a message when verbose.
     pub fn detail(&self, message: impl Display) {
         if self.verbosity == Verbosity::Verbose {
-            to_stderr(format_args!("{message}"));
+            to_stderr(format_args!("{}", shown(message)));
         }
     }
 
-    /// Prints a line of data.
+    /// Prints lines of data.
     pub fn line(&self, text: impl Display) -> io::Result<()> {
+        self.print(shown(text))
+    }
+
+    fn print(&self, text: impl Display) -> io::Result<()> {
         let mut output = anstream::stdout().lock();
         writeln!(output, "{text}")?;
         output.flush()
@@ -91,8 +96,13 @@ impl Console {
 
     /// Prints an object as one line of JSON; numbers that are not finite become null.
     pub fn object(&self, value: &impl Serialize) -> io::Result<()> {
-        self.line(serde_json::to_string(value)?)
+        self.print(serde_json::to_string(value)?)
     }
+}
+
+/// A message without control characters: names come from files.
+fn shown(message: impl Display) -> String {
+    clean(&message.to_string()).into_owned()
 }
 
 /// A closed standard error is no reason to fail: there is nobody left to tell.

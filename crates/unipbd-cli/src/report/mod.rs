@@ -1,5 +1,6 @@
 //! What the user sees: messages, progress, JSON lines, summaries.
 
+pub mod clean;
 mod console;
 mod counter;
 pub mod format;

@@ -23,6 +23,13 @@ pub struct LogFile {
     pub bytes: u64,
 }
 
+impl LogFile {
+    /// Whether the log went to standard output.
+    pub fn is_standard_output(&self) -> bool {
+        self.path.as_os_str() == "-"
+    }
+}
+
 /// Everything worth knowing at the end of a run.
 #[derive(Clone, Debug)]
 pub struct Summary {

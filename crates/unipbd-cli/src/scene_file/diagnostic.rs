@@ -221,6 +221,6 @@ impl Diagnostic {
 }
 
 /// Control characters would upset a terminal; tabs are kept.
-fn printable(text: &str) -> String {
+pub(super) fn printable(text: &str) -> String {
     text.chars().map(|letter| if letter.is_control() && letter != '\t' { '\u{fffd}' } else { letter }).collect()
 }

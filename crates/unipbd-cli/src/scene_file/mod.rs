@@ -7,6 +7,7 @@
 
 mod diagnostic;
 mod overrides;
+mod place;
 mod renamed;
 mod repair;
 mod schema;
@@ -53,7 +54,7 @@ pub struct LoadedScene {
 /// Reads a scene file and lays the overrides over it.
 pub fn load(path: impl AsRef<Path>, overrides: &[Override]) -> Result<LoadedScene, SceneFileError> {
     let path = path.as_ref();
-    let name = path.display().to_string();
+    let name = diagnostic::printable(&path.display().to_string());
     let mut bytes = Vec::new();
     let read = File::open(path).and_then(|file| file.take(LARGEST_FILE + 1).read_to_end(&mut bytes));
     read.map_err(|error| SceneFileError::Io { path: path.to_owned(), error })?;

@@ -1,6 +1,6 @@
 //! Compares the tree with the schema, notes what does not fit and replaces it by something that does.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 use std::ops::Range;
 
 use serde_json::Value as Schema;
@@ -20,7 +20,7 @@ pub(super) struct Repair<'a> {
     sources: &'a Sources<'a>,
     pub(super) faults: Vec<Fault>,
     /// Places where the tree no longer says what the file says.
-    replaced: Vec<KeyPath>,
+    replaced: HashSet<KeyPath>,
     /// Strings in parts of the file that were left out: names that other parts may refer to.
     lost_words: BTreeSet<String>,
     /// A part of the file that may hold anything was left out.
@@ -29,7 +29,7 @@ pub(super) struct Repair<'a> {
 
 impl<'a> Repair<'a> {
     pub(super) fn new(root: &'a Schema, sources: &'a Sources<'a>) -> Self {
-        let (faults, replaced) = (Vec::new(), Vec::new());
+        let (faults, replaced) = (Vec::new(), HashSet::new());
         Repair { root, sources, faults, replaced, lost_words: BTreeSet::new(), lost_table: false }
     }
 
@@ -40,10 +40,11 @@ impl<'a> Repair<'a> {
     /// Whether a problem is but a consequence of what was noted here.
     pub(super) fn explains(&self, problem: &Problem, tree: &Node) -> bool {
         let path = &problem.path.0;
-        let below = |replaced: &KeyPath| path.starts_with(&replaced.0) || path.is_empty() && replaced.0.len() == 1;
+        let below = (0..=path.len()).any(|length| self.replaced.contains(&KeyPath(path[..length].to_vec())))
+            || path.is_empty() && self.replaced.iter().any(|replaced| replaced.0.len() == 1);
         let names_lost =
             || tree.at(&problem.path).and_then(Node::as_text).is_some_and(|word| self.lost_words.contains(word));
-        self.replaced.iter().any(below) || path.is_empty() && self.lost_table || names_lost()
+        below || path.is_empty() && self.lost_table || names_lost()
     }
 
     fn fault(&mut self, path: &KeyPath, span: &Range<usize>, message: String, hint: Option<String>) {
@@ -101,7 +102,7 @@ impl<'a> Repair<'a> {
     fn replace(&mut self, node: &mut Node, schema: &'a Schema, path: &KeyPath) {
         self.lose(node);
         node.value = self.placeholder(schema, &node.span);
-        self.replaced.push(path.clone());
+        self.replaced.insert(path.clone());
     }
 
     /// Remembers the names in a part that is left out.
@@ -252,7 +253,7 @@ impl<'a> Repair<'a> {
     }
 
     fn missing(&mut self, path: KeyPath, span: &Range<usize>, schema: &'a Schema) {
-        self.replaced.push(path.clone());
+        self.replaced.insert(path.clone());
         let expected = schema::describe(self.root, schema);
         let hint = match description(schema) {
             Some(text) => format!("{expected}: {text}"),

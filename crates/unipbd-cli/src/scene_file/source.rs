@@ -5,7 +5,8 @@ use std::string::FromUtf8Error;
 
 use unipbd_core::scene::KeyPath;
 
-use super::diagnostic::{Diagnostic, Origin, SceneFileError};
+use super::diagnostic::{Diagnostic, Origin, SceneFileError, printable};
+use super::place::Lines;
 
 /// What kind of check found a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -55,7 +56,7 @@ impl Fault {
 /// The file, then each override, one behind the other.
 pub(super) struct Sources<'a> {
     file_name: &'a str,
-    parts: Vec<(usize, &'a str)>,
+    parts: Vec<(usize, Lines<'a>)>,
 }
 
 impl<'a> Sources<'a> {
@@ -64,7 +65,7 @@ impl<'a> Sources<'a> {
         let mut start = 0;
         let texts = std::iter::once(text).chain(overrides);
         let place = |part: &'a str| {
-            let place = (start, part);
+            let place = (start, Lines::new(part));
             start += part.len() + 1;
             place
         };
@@ -74,7 +75,7 @@ impl<'a> Sources<'a> {
 
     /// The text of the file.
     pub(super) fn text(&self) -> &'a str {
-        self.parts[0].1
+        self.parts[0].1.text()
     }
 
     pub(super) fn start_of_override(&self, index: usize) -> usize {
@@ -84,14 +85,14 @@ impl<'a> Sources<'a> {
     /// The text at a span, as written.
     pub(super) fn excerpt(&self, span: &Range<usize>) -> &'a str {
         let (part, local) = self.part_at(span.start);
-        let (start, text) = self.parts[part];
-        text.get(local..span.end.saturating_sub(start).max(local)).unwrap_or("")
+        let (start, lines) = &self.parts[part];
+        lines.text().get(local..span.end.saturating_sub(*start).max(local)).unwrap_or("")
     }
 
     /// Number of the part that holds an offset, and the offset within it.
     fn part_at(&self, offset: usize) -> (usize, usize) {
         let part = self.parts.partition_point(|(start, _)| *start <= offset).saturating_sub(1);
-        (part, (offset - self.parts[part].0).min(self.parts[part].1.len()))
+        (part, (offset - self.parts[part].0).min(self.parts[part].1.text().len()))
     }
 
     /// Sorts faults by position and makes an error of them.
@@ -114,47 +115,23 @@ impl<'a> Sources<'a> {
             column: 1,
             source_line: String::new(),
             caret: 0..0,
-            key: fault.path.to_string(),
+            key: printable(&fault.path.to_string()),
             message: fault.message,
             hint: fault.hint,
         };
         let Some(span) = fault.span else { return blank };
         let (part, offset) = self.part_at(span.start);
-        let (start, text) = self.parts[part];
-        let place = Place::of(text, offset, span.end.saturating_sub(start));
-        let origin = if part == 0 { blank.origin } else { Origin::Override(text.to_owned()) };
+        let (start, lines) = &self.parts[part];
+        let place = lines.place(offset, span.end.saturating_sub(*start));
+        let origin = if part == 0 { blank.origin } else { Origin::Override(lines.text().to_owned()) };
         Diagnostic {
             origin,
             line: place.line,
-            column: place.caret.start + 1,
+            column: place.column,
             source_line: place.text,
             caret: place.caret,
             ..blank
         }
-    }
-}
-
-/// A stretch of one line.
-struct Place {
-    line: usize,
-    text: String,
-    caret: Range<usize>,
-}
-
-impl Place {
-    /// The line that holds byte `start` of a text, with the characters from there to byte `end` marked.
-    fn of(text: &str, start: usize, end: usize) -> Place {
-        let start = (0..=start.min(text.len())).rev().find(|&byte| text.is_char_boundary(byte)).unwrap_or(0);
-        let begin = text[..start].rfind('\n').map_or(0, |newline| newline + 1);
-        let line = text[..begin].matches('\n').count() + 1;
-        let begin = if text[begin..].starts_with('\u{feff}') { begin + '\u{feff}'.len_utf8() } else { begin };
-        let stop = text[start..].find('\n').map_or(text.len(), |newline| start + newline);
-        let content = text.get(begin..stop).unwrap_or("").trim_end_matches('\r');
-        let characters = |to: usize| text.get(begin..to.max(begin)).map_or(0, |part| part.chars().count());
-        let length = content.chars().count();
-        let from = characters(start).min(length);
-        let end = (end..text.len()).find(|&byte| text.is_char_boundary(byte)).unwrap_or(text.len());
-        Place { line, text: content.to_owned(), caret: from..characters(end.min(stop)).clamp(from, length.max(from)) }
     }
 }
 

@@ -54,7 +54,7 @@ fn wrong_arguments_exit_2_and_print_nothing_on_standard_output() {
     for (arguments, expected) in [
         (&["drop.toml", "--thread", "2"][..], "--threads"),
         (&["drop.toml", "--threads", "0"], "from 1"),
-        (&["drop.toml", "--duration", "-1"], "not negative"),
+        (&["drop.toml", "--duration", "-1"], "positive"),
         (&["drop.toml", "--fps", "0"], "positive"),
         (&["drop.toml", "--set", "spacing"], "key=value"),
         (&["drop.toml", "--fields", "speed"], "velocity"),

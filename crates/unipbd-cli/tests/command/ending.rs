@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use crate::support::{Ended, Place};
 
 /// Waits until the child has finished a few frames.
-fn wait_for_frames(place: &Place, child: &mut Child) {
+pub fn wait_for_frames(place: &Place, child: &mut Child) {
     let start = Instant::now();
     let grown = || {
         place
@@ -21,7 +21,7 @@ fn wait_for_frames(place: &Place, child: &mut Child) {
     }
 }
 
-fn signal(child: &Child, name: &str) {
+pub fn signal(child: &Child, name: &str) {
     let status = std::process::Command::new("kill").args([name, &child.id().to_string()]).status().unwrap();
     assert!(status.success());
 }
@@ -58,9 +58,15 @@ fn a_run_that_diverges_exits_4_and_keeps_its_log() {
 /// Whether Ctrl-C is ignored here, as in the background jobs of a script: what is started here ignores it too.
 #[cfg(unix)]
 fn interrupts_are_ignored() -> bool {
+    ignores(2)
+}
+
+/// Whether a signal of this number is ignored here.
+#[cfg(unix)]
+pub fn ignores(signal: u32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
-    ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|mask| mask & 2 != 0)
+    ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|mask| mask >> (signal - 1) & 1 != 0)
 }
 
 #[cfg(unix)]

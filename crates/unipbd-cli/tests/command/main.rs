@@ -1,9 +1,19 @@
 //! The command line from outside: what it prints where, and how it exits.
 
 mod arguments;
+mod crafted_logs;
 mod ending;
+mod escapes;
+mod input_as_output;
+mod instruction_sets;
+mod kills;
 mod log;
+mod many_things;
+mod odd_values;
 mod output;
+mod partial_logs;
 mod pictures;
 mod quantities;
+mod signals;
 mod support;
+mod threads_rule;

@@ -58,7 +58,7 @@ pub(super) fn solids(scene: &Scene) -> Vec<Solid> {
 
 /// A body and its copies.
 fn specifications(description: &BodyDescription, number: usize) -> Vec<BodySpec> {
-    let instances = description.instances(number).into_iter();
+    let instances = description.instances(number);
     instances.map(|(name, position)| specification(description, name, position)).collect()
 }
 

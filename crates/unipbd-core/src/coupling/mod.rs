@@ -87,9 +87,14 @@ impl RigidBodies {
         self.first_sample.first() != self.first_sample.last() || !self.tied.is_empty()
     }
 
-    /// Whether both hold the same bodies, perhaps at different times.
-    pub(crate) fn is_like(&self, other: &RigidBodies) -> bool {
-        self.first_sample == other.first_sample && self.bodies.is_like(&other.bodies)
+    /// These bodies at the moment of a saved state; `None` if the state is of other bodies or makes no sense.
+    pub(crate) fn at_saved(&self, saved: RigidBodies) -> Option<RigidBodies> {
+        if self.first_sample != saved.first_sample {
+            return None;
+        }
+        let bodies = self.bodies.at_saved(saved.bodies)?;
+        let contacts = self.contacts.at_saved(saved.contacts, &bodies)?;
+        Some(RigidBodies { bodies, contacts, ..self.clone() })
     }
 
     /// Bodies that may have to carry each other: the height of all that are awake over the smallest.

@@ -1,11 +1,11 @@
 //! Whether an edit can be made as a whole.
 
 use super::{Change, Edit, EditError, Points, Values};
-use crate::math::Vector64;
+use crate::math::{Vector64, wide};
 use crate::observe::Material;
 use crate::phase::Phase;
 use crate::rigid::{BodyKind, Twist};
-use crate::scene::{FARTHEST, PointMotion};
+use crate::scene::{FARTHEST, PointMotion, crowd};
 use crate::step::{ABSURD_SPEED, Solver};
 
 /// The state that an edit is checked against.
@@ -32,9 +32,36 @@ impl<'a> Checker<'a> {
         self.ids(&edit.removals)?;
         edit.bodies.iter().try_for_each(|(body, velocity)| self.body(*body, velocity))?;
         edit.additions.iter().try_for_each(|points| self.points(points))?;
+        self.crowding(edit)?;
         let added: usize = edit.additions.iter().map(|points| points.positions.len()).sum();
         let left = (u32::MAX - self.solver.particles().ids_given()) as usize;
         if added >= left { Err(EditError::Unfit(format!("no more than {left} ids are left"))) } else { Ok(()) }
+    }
+
+    /// Refuses places with so many particles that no list of their pairs could be held.
+    fn crowding(&self, edit: &Edit) -> Result<(), EditError> {
+        let moved = edit.changes.iter().filter_map(|change| match &change.values {
+            Values::Positions(positions) => Some(&positions[..]),
+            _ => None,
+        });
+        let dense = |points: &&Points| self.material(&points.material).is_ok_and(|known| known.phase.is_dense());
+        let added = edit.additions.iter().filter(dense).map(|points| &points.positions[..]);
+        let new: Vec<Vector64> = moved.chain(added).flatten().copied().collect();
+        if new.is_empty() {
+            return Ok(());
+        }
+        let particles = self.solver.particles();
+        let leave = edit.changes.iter().filter(|change| matches!(change.values, Values::Positions(_)));
+        let mut gone: Vec<u32> = leave.flat_map(|change| &change.ids).chain(&edit.removals).copied().collect();
+        gone.sort_unstable();
+        let stays = |row: &usize| gone.binary_search(&particles.ids()[*row]).is_err();
+        let there = (0..particles.dense()).filter(stays).map(|row| wide(particles.positions()[row]));
+        match crowd(new, there, self.solver.reach()) {
+            Some(crowd) => {
+                Err(EditError::Unfit(format!("it would bring {crowd}: leave about one spacing between them")))
+            }
+            None => Ok(()),
+        }
     }
 
     fn ids(&self, ids: &[u32]) -> Result<(), EditError> {

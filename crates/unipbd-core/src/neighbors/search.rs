@@ -43,6 +43,16 @@ impl SavedList {
         numbers.into_iter().all(Real::is_finite) && self.reference.iter().all(|point| point.is_finite())
     }
 
+    /// Whether a search within a radius can have made it: no skin is as wide.
+    pub fn fits(&self, radius: Real) -> bool {
+        self.skin <= radius
+    }
+
+    /// Positions that the list is made at again [m].
+    pub fn reference(&self) -> &[Vector] {
+        &self.reference
+    }
+
     /// Appends it to a saved state.
     pub fn write(&self, out: &mut Writer) {
         out.column(&self.reference);
@@ -121,6 +131,11 @@ impl Neighbors {
     /// Which axes repeat.
     pub fn periodic(&self) -> Periodic {
         self.grid.periodic()
+    }
+
+    /// The radius within which pairs are found [m].
+    pub fn radius(&self) -> Real {
+        self.radius
     }
 
     /// The list: all pairs within the radius, and some more.

@@ -21,9 +21,10 @@ pub const SERIAL_BELOW: usize = 4096;
 const PIECES: usize = 8;
 
 /// Whether loops may use a thread pool.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Parallelism {
     /// Everything on the calling thread.
+    #[default]
     Serial,
     /// On the rayon pool the caller runs in.
     Pool,

@@ -196,6 +196,11 @@ impl Particles {
         self.asleep
     }
 
+    /// Sleeping rows near others that are awake.
+    pub(crate) fn border(&self) -> usize {
+        self.border
+    }
+
     /// Dense rows with a neighbour list: those awake, and those that sleep near them.
     pub fn listed(&self) -> usize {
         self.awake() + self.border

@@ -16,14 +16,14 @@ pub struct InverseMass {
 
 /// Constant data of a body.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
-struct Script {
+pub(super) struct Script {
     /// Pose of the outline's origin at time zero.
     start: Pose,
     /// Origin of the outline relative to the centre of mass, in body coordinates.
     origin: Vector64,
     motion: Motion,
     /// Velocity of a kinematic body set by a caller: it replaces the prescribed motion from then on.
-    driven: Option<Twist>,
+    pub(super) driven: Option<Twist>,
     gravity_factor: f64,
 }
 
@@ -42,10 +42,10 @@ pub struct Bodies {
     pub(crate) inverse_masses: Vec<InverseMass>,
     pub(crate) asleep: Vec<bool>,
     /// Elasticity of bodies made of particles with shape matching: their pose follows the particles.
-    matched: Vec<Option<Elasticity>>,
+    pub(super) matched: Vec<Option<Elasticity>>,
     /// Contacts and joints: sum of impulses since the start of the frame [N s], [N m s].
     pub(crate) contact_loads: Vec<Twist>,
-    fluid_loads: Vec<Twist>,
+    pub(super) fluid_loads: Vec<Twist>,
     /// Whether the fluid or a caller has pushed the body since the start of the frame.
     pub(crate) pushed: Vec<bool>,
     pub(crate) cores: Vec<Core>,
@@ -53,8 +53,8 @@ pub struct Bodies {
     pub(crate) reaches: Vec<f64>,
     /// Square root of the area [m].
     pub(crate) sizes: Vec<f64>,
-    scripts: Vec<Script>,
-    views: Vec<Body>,
+    pub(super) scripts: Vec<Script>,
+    pub(super) views: Vec<Body>,
 }
 
 impl Bodies {

@@ -3,6 +3,7 @@
 mod body_set;
 pub mod contact;
 mod motion;
+mod saved;
 mod specification;
 mod wall;
 

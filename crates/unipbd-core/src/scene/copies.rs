@@ -1,8 +1,11 @@
 //! What a body description stands for: a shape, and one body or rows of them.
 
-use super::{BodyDescription, Heap, Scene};
+use super::{BodyDescription, Copies, Heap, Scene};
 use crate::math::Vector64;
 use crate::shapes::Shape;
+
+/// More bodies than this are refused.
+pub(crate) const MOST_BODIES: usize = 200_000;
 
 impl BodyDescription {
     /// The outline; a disc without area where none is given, which [`Scene::validate`] refuses.
@@ -15,37 +18,34 @@ impl BodyDescription {
     }
 
     /// Names and starting places [m] of the body and its copies; `number` names a body without a name.
-    pub(crate) fn instances(&self, number: usize) -> Vec<(String, Vector64)> {
+    pub(crate) fn instances(&self, number: usize) -> impl Iterator<Item = (String, Vector64)> {
         let name = if self.name.is_empty() { format!("body {number}") } else { self.name.clone() };
-        let origin = Vector64::from(self.position);
-        if self.copies.is_none() {
-            return vec![(name, origin)];
-        }
-        let named = |(copy, offset)| (format!("{name} {copy}"), origin + offset);
-        self.offsets().into_iter().enumerate().map(named).collect()
+        let copied = self.copies.is_some();
+        let named = move |copy| if copied { format!("{name} {copy}") } else { name.clone() };
+        self.places().enumerate().map(move |(copy, place)| (named(copy), place))
     }
 
-    /// From the body to each of its copies, row by row, itself included [m].
-    fn offsets(&self) -> Vec<Vector64> {
-        let Some(copies) = &self.copies else { return vec![Vector64::ZERO] };
-        let mut offsets = Vec::new();
-        for row in 0..copies.rows {
+    /// Starting places of the body and its copies, row by row [m].
+    pub(crate) fn places(&self) -> impl Iterator<Item = Vector64> {
+        let origin = Vector64::from(self.position);
+        let alone = Copies { columns: 1, rows: 1, step: [0.0; 2], heap: Heap::Grid };
+        let copies = self.copies.clone().unwrap_or(alone);
+        (0..copies.rows).flat_map(move |row| {
             let (columns, shift) = match copies.heap {
                 Heap::Grid => (copies.columns, 0.0),
                 Heap::Brick => (copies.columns, 0.5 * f64::from(row % 2)),
                 Heap::Pyramid => (copies.columns.saturating_sub(row), 0.5 * f64::from(row)),
             };
-            let place = |column| Vector64::new(f64::from(column) + shift, f64::from(row)) * Vector64::from(copies.step);
-            offsets.extend((0..columns).map(place));
-        }
-        offsets
+            let step = Vector64::from(copies.step);
+            (0..columns).map(move |column| origin + Vector64::new(f64::from(column) + shift, f64::from(row)) * step)
+        })
     }
 }
 
 impl Scene {
-    /// The names of all bodies, copies included.
+    /// The names of all bodies, copies included; of more bodies than a scene may have, the first.
     pub(crate) fn body_names(&self) -> Vec<String> {
         let instances = self.body.iter().enumerate().flat_map(|(number, body)| body.instances(number));
-        instances.map(|(name, _)| name).collect()
+        instances.map(|(name, _)| name).take(MOST_BODIES).collect()
     }
 }

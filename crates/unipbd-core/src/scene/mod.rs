@@ -7,6 +7,7 @@ mod bodies;
 mod checked;
 mod contacts;
 mod copies;
+mod crowding;
 mod description;
 mod estimate;
 mod expect;
@@ -47,6 +48,9 @@ pub use walls::*;
 pub use waves::*;
 
 pub(crate) use contacts::OVER_RELAXATION;
+pub(crate) use copies::MOST_BODIES;
+pub(crate) use crowding::crowd;
 pub(crate) use layout::{block_points, disc_points};
 pub(crate) use substep_law::{COURANT, SubstepLaw};
 pub(crate) use validate::FARTHEST;
+pub use validate::{FRAME_RATES, LONGEST_DURATION};

@@ -15,7 +15,7 @@ pub struct Samples {
 /// Cell centres of a lattice in the bounding box that lie inside the shape.
 pub(super) fn fill(shape: &Shape, spacing: f64) -> Samples {
     let moments = shape.moments();
-    let (low, high) = bounds(shape);
+    let (low, high) = shape.bounds();
     let counts = ((high - low) / spacing).round().max(Vector64::ONE);
     // For a box the lattice fits exactly; for a disc it has the true spacing and a node at the centre.
     let cell = if matches!(shape, Shape::Polygon(_)) { (high - low) / counts } else { Vector64::splat(spacing) };
@@ -39,12 +39,15 @@ pub(super) fn fill(shape: &Shape, spacing: f64) -> Samples {
     Samples { points, area: moments.area / count }
 }
 
-fn bounds(shape: &Shape) -> (Vector64, Vector64) {
-    match shape {
-        Shape::Disc { radius } => (Vector64::splat(-radius), Vector64::splat(*radius)),
-        Shape::Polygon(corners) => {
-            let wide = (Vector64::INFINITY, Vector64::NEG_INFINITY);
-            corners.iter().fold(wide, |(low, high), &c| (low.min(c), high.max(c)))
+impl Shape {
+    /// Lower left and upper right corner of the box around the shape [m].
+    pub(crate) fn bounds(&self) -> (Vector64, Vector64) {
+        match self {
+            Shape::Disc { radius } => (Vector64::splat(-radius), Vector64::splat(*radius)),
+            Shape::Polygon(corners) => {
+                let wide = (Vector64::INFINITY, Vector64::NEG_INFINITY);
+                corners.iter().fold(wide, |(low, high), &c| (low.min(c), high.max(c)))
+            }
         }
     }
 }

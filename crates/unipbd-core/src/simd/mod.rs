@@ -17,9 +17,28 @@ pub(crate) mod x86;
 pub use number::Number;
 
 use crate::math::Vector;
+use std::sync::OnceLock;
 
 /// Rows in a block.
 pub const LANES: usize = 8;
+
+/// The level that was chosen for this process: the first choice stays.
+static CHOSEN: OnceLock<Level> = OnceLock::new();
+
+/// Chooses the level of this name for all that follows in this process, for tests and comparisons: results never depend
+/// on it.
+///
+/// # Errors
+/// A sentence, where the word names no level that this machine can run, or another level is in use.
+pub fn choose(word: &str) -> Result<(), String> {
+    let levels = Level::available();
+    let names: Vec<&str> = levels.iter().map(|level| level.name()).collect();
+    let found = levels.iter().copied().find(|level| level.name() == word);
+    let level = found
+        .ok_or_else(|| format!("must be an instruction set of this machine ({}), found {word:?}", names.join(", ")))?;
+    let used = *CHOSEN.get_or_init(|| level);
+    if used == level { Ok(()) } else { Err(format!("is {word:?}, but {} is in use already", used.name())) }
+}
 
 /// Two vectors of one row, read by one load.
 pub(crate) type Record = [Vector; 2];
@@ -46,10 +65,25 @@ impl Level {
         all.into_iter().filter(|level| level.runs_here()).collect()
     }
 
-    /// The fastest level of this machine.
+    /// The level in use: the fastest of this machine, or that of [`choose`].
     pub fn best() -> Level {
+        *CHOSEN.get_or_init(Level::fastest)
+    }
+
+    fn fastest() -> Level {
         let fastest_first = [Level::Avx512, Level::Avx2, Level::Sse2, Level::Portable];
         fastest_first.into_iter().find(|level| level.runs_here()).unwrap_or(Level::Scalar)
+    }
+
+    /// The name of the level.
+    pub fn name(self) -> &'static str {
+        match self {
+            Level::Scalar => "scalar",
+            Level::Portable => "portable",
+            Level::Sse2 => "sse2",
+            Level::Avx2 => "avx2",
+            Level::Avx512 => "avx512",
+        }
     }
 
     fn runs_here(self) -> bool {

@@ -20,11 +20,6 @@ pub(super) fn from_words(words: &[u64], running: &RigidBodies) -> Result<RigidBo
         return Err(damaged("its bodies end too early"));
     }
     bytes.truncate(length as usize);
-    let mut rigid: RigidBodies = postcard::from_bytes(&bytes).map_err(|_| damaged("its bodies make no sense"))?;
-    if !rigid.is_like(running) {
-        return Err(damaged("its bodies are not those of the run"));
-    }
-    // The contact solver follows from the scene.
-    rigid.contacts.solve_like(&running.contacts);
-    Ok(rigid)
+    let rigid: RigidBodies = postcard::from_bytes(&bytes).map_err(|_| damaged("its bodies make no sense"))?;
+    running.at_saved(rigid).ok_or_else(|| damaged("its bodies are not those of the run"))
 }

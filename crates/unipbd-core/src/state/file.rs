@@ -65,7 +65,7 @@ fn read(input: &mut Reader<'_>) -> Result<State, StateError> {
     if !input.0.is_empty() {
         return Err(damaged("something follows its end"));
     }
-    Ok(State { structure, clock, particles, list, sections })
+    Ok(State { structure, clock, particles, list, sections, read: true })
 }
 
 fn write_clock(clock: &Clock, out: &mut Writer) {

@@ -3,6 +3,8 @@
 //! A [`State`] holds everything that a run goes on from, bit for bit: columns in row order with their
 //! rounding remainders, multipliers, the reference positions and the skin of the neighbour list (the
 //! same list is made from them again), clock, emitters, groups. Saving never changes a run.
+//!
+//! Bytes are read by the version of the format that wrote them and by no other: a run goes on bit for bit, or not at all.
 
 mod bodies;
 mod check;
@@ -27,6 +29,8 @@ pub struct State {
     particles: Particles,
     list: SavedList,
     sections: Vec<Section>,
+    /// Whether it comes from bytes, which anybody may have made.
+    read: bool,
 }
 
 /// The additional data of one part of a run (emitters, a constraint group).

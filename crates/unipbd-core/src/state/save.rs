@@ -2,12 +2,20 @@ use super::error::damaged;
 use super::structure::structure;
 use super::{Section, State, StateError, bodies};
 use crate::coupling::RigidBodies;
-use crate::math::real;
+use crate::math::{Vector, real, wide};
+use crate::scene::crowd;
 use crate::step::{Clock, Solver};
 
 const EMITTERS: &str = "emitters";
 const SMOKE: &str = "smoke";
 const BODIES: &str = "bodies";
+
+/// Farthest place that a state may hold [spacings]: a run that gets there has long been of no use.
+const FARTHEST: f64 = 1e9;
+/// Longest substep of smoke [s].
+const LONGEST_FRAME: f64 = 1e6;
+/// Most substeps of a frame; the settings of a scene allow fewer.
+const MOST_SUBSTEPS: u32 = 1_000_000;
 
 impl Solver {
     /// The complete state needed to continue this run. The run is not changed.
@@ -35,6 +43,7 @@ impl Solver {
             particles: parts.particles.clone(),
             list: parts.neighbors.saved(),
             sections,
+            read: false,
         }
     }
 
@@ -90,6 +99,14 @@ impl Solver {
                 return Err(StateError::OtherScene { saved: saved.to_owned(), running: running.clone() });
             }
         }
+        self.accept_sections(state)?;
+        self.accept_clock(state)?;
+        self.accept_particles(state)?;
+        // A run that has diverged goes back to where it was.
+        if state.read { self.accept_places(state) } else { Ok(()) }
+    }
+
+    fn accept_sections(&self, state: &State) -> Result<(), StateError> {
         let parts = &self.world.parts;
         let names = parts.emitters.iter().map(|_| EMITTERS).chain(parts.smoke.iter().map(|_| SMOKE));
         let names = names.chain(parts.rigid.iter().map(|_| BODIES));
@@ -102,8 +119,25 @@ impl Solver {
         {
             return Err(damaged("its emitters make no sense"));
         }
-        let materials = &parts.materials;
-        let particles = &state.particles;
+        let smoke = state.sections.iter().find(|section| section.name == SMOKE && parts.smoke.is_some());
+        let length = smoke.map(|section| section.words.first().copied().map_or(f64::NAN, f64::from_bits));
+        if length.is_some_and(|length| !(0.0..=LONGEST_FRAME).contains(&length)) {
+            return Err(damaged("its smoke was moved by no substep"));
+        }
+        Ok(())
+    }
+
+    /// The rest of a frame is stepped as it was begun.
+    fn accept_clock(&self, state: &State) -> Result<(), StateError> {
+        let (clock, frame_time) = (&state.clock, self.world.parts.frame_time);
+        let whole = clock.dt <= frame_time * (1.0 + 1e-9) && clock.substeps <= MOST_SUBSTEPS;
+        let begun = clock.done == 0 || (clock.dt * f64::from(clock.substeps) - frame_time).abs() <= 1e-6 * frame_time;
+        if whole && begun { Ok(()) } else { Err(damaged("its substeps are not those of a frame of the run")) }
+    }
+
+    fn accept_particles(&self, state: &State) -> Result<(), StateError> {
+        let parts = &self.world.parts;
+        let (materials, particles) = (&parts.materials, &state.particles);
         let known = |row: usize| materials.get(usize::from(particles.material[row])).map(|material| material.phase);
         if (0..particles.len()).any(|row| known(row) != Some(particles.phase[row])) {
             return Err(damaged("a particle is of no material of the scene"));
@@ -112,8 +146,31 @@ impl Solver {
         let rows = |wanted: bool| if wanted { particles.len() } else { 0 };
         let wanted = [optional.temperature, optional.age, optional.rest, optional.rest].map(rows);
         let found = [&particles.temperature, &particles.age, &particles.rest].map(Vec::len);
-        if found != wanted[..3] || particles.anchor.len() != wanted[3] || particles.asleep() > rows(optional.rest) {
+        let same = found == wanted[..3] && particles.anchor.len() == wanted[3] && particles.optional() == optional;
+        if !same || particles.asleep() > rows(optional.rest) {
             return Err(damaged("a column is missing"));
+        }
+        Ok(())
+    }
+
+    /// Places from which the search for neighbours can start.
+    fn accept_places(&self, state: &State) -> Result<(), StateError> {
+        let (parts, particles) = (&self.world.parts, &state.particles);
+        let farthest = FARTHEST * parts.spacing;
+        let near = |vector: &Vector| wide(*vector).length() <= farthest;
+        let columns = [&particles.position, &particles.start, &particles.remainder];
+        let placed = columns.into_iter().flatten().chain(state.list.reference()).all(near);
+        // The displacement of smoke is a velocity.
+        let moved = particles.displacement[..particles.dense()].iter().all(near);
+        if !(placed && moved && state.list.fits(parts.neighbors.radius())) {
+            return Err(damaged("a particle is too far away"));
+        }
+        let reach = f64::from(parts.neighbors.radius());
+        let sets = [&particles.position[..particles.dense()], state.list.reference()];
+        for places in sets {
+            if let Some(crowd) = crowd(places.iter().map(|&place| wide(place)), [], reach) {
+                return Err(StateError::Damaged(format!("it has {crowd}")));
+            }
         }
         Ok(())
     }

@@ -19,6 +19,21 @@ pub enum SolverError {
         /// Description of the error.
         what: String,
     },
+    /// A hook asked for an acceleration that is not finite or absurd. The run stands before the substep.
+    Hook {
+        /// Substep since the start.
+        step: u64,
+        /// Simulated time [s].
+        time: f64,
+        /// Stable id of the particle.
+        particle: u32,
+        /// Name of its material.
+        material: String,
+        /// What the hook asked for, all hooks together [m/s^2].
+        acceleration: [f64; 2],
+        /// The acceleration from which on a run would diverge at once [m/s^2].
+        limit: f64,
+    },
 }
 
 impl fmt::Display for SolverError {
@@ -27,6 +42,11 @@ impl fmt::Display for SolverError {
             SolverError::Diverged { stage, step, time, particle, material, what } => write!(
                 f,
                 "diverged at {time:.6} s (substep {step}, after {stage}): particle {particle} of \"{material}\" {what}"
+            ),
+            SolverError::Hook { step, time, particle, material, acceleration: [x, y], limit } => write!(
+                f,
+                "a hook accelerates particle {particle} of \"{material}\" by ({x:e}, {y:e}) m/s^2 at {time:.6} s (substep \
+                 {step}); the limit is {limit:.3e} m/s^2"
             ),
         }
     }

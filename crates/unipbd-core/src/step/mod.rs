@@ -1,6 +1,7 @@
 //! The solver loop. `pipeline.rs` is the entry point for readers: the stages of a substep and their order.
 
 mod access;
+mod density_watch;
 mod diagnose;
 mod error;
 mod integrate;
@@ -13,6 +14,7 @@ mod substeps;
 mod threads;
 mod timings;
 mod view;
+mod watched;
 mod world;
 
 pub use error::SolverError;
@@ -21,5 +23,6 @@ pub use pipeline::Stage;
 pub use solver::{FrameReport, Solver};
 pub(crate) use stages::ABSURD_SPEED;
 pub use substeps::{Choice, Demand, SubstepRule};
+pub use threads::{MOST_THREADS, thread_count};
 pub use view::SubstepView;
 pub(crate) use world::{Clock, Parts, Population};

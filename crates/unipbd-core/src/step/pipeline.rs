@@ -174,6 +174,11 @@ impl Plan {
         }
     }
 
+    /// Whether a group holds the density of fluids.
+    pub fn has_density(&self) -> bool {
+        self.substep.contains(&Stage::StoreDensity)
+    }
+
     /// Whether the scene keeps a neighbour list.
     pub fn has_neighbors(&self) -> bool {
         self.substep.contains(&Stage::FindNeighbors)

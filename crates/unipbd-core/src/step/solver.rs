@@ -4,6 +4,7 @@ use super::world::{Parts, World};
 use super::{SolverError, Stage};
 use crate::constraints::ConstraintGroup;
 use crate::effects::Effect;
+use crate::parallel::Parallelism;
 
 /// A running simulation. Made by [`Scene::build`](crate::scene::Scene::build).
 ///
@@ -62,7 +63,8 @@ impl Solver {
     /// ```
     ///
     /// # Errors
-    /// The error of `hook`, or a [`SolverError`] converted to its type. After an error of the hook the run
+    /// The error of `hook`, or a [`SolverError`] converted to its type, such as [`SolverError::Hook`] for an acceleration
+    /// that is not finite or absurd. After an error of the hook the run
     /// stands between two substeps; the next call continues with the rest of the frame.
     pub fn step_frame_with<E: From<SolverError>>(
         &mut self,
@@ -74,6 +76,10 @@ impl Solver {
             if let Err(error) = hook(&mut SubstepView::new(&mut self.world)) {
                 self.world.parts.particles.clear_accelerations();
                 return Err(error);
+            }
+            if let Err(error) = self.world.check_accelerations() {
+                self.world.parts.particles.clear_accelerations();
+                return Err(error.into());
             }
             self.on_threads(World::finish_substep)?;
         }
@@ -116,6 +122,16 @@ impl Solver {
         &self.world.plan.substep
     }
 
+    /// The speed from which on a run counts as diverged [m/s]: a million spacings in a frame.
+    pub fn speed_limit(&self) -> f64 {
+        self.world.speed_limit()
+    }
+
+    /// The radius within which particles act on each other [m].
+    pub(crate) fn reach(&self) -> f64 {
+        f64::from(self.world.parts.neighbors.radius())
+    }
+
     /// Threads in use. Never changes results.
     pub fn threads(&self) -> usize {
         self.threads.count()
@@ -124,11 +140,13 @@ impl Solver {
     /// From now on, uses this many threads.
     pub fn set_threads(&mut self, threads: usize) {
         self.threads = Threads::new(threads);
+        // Until the next step: what looks at the state must not ask for a pool that is gone.
+        self.world.parts.parallelism = Parallelism::Serial;
     }
 
     pub(crate) fn on_threads<T: Send>(&mut self, work: impl FnOnce(&mut World) -> T + Send) -> T {
         let world = &mut self.world;
-        self.threads.run(world.parts.particles.len(), |parallelism| {
+        self.threads.run(world.rows_to_share(), |parallelism| {
             world.parts.parallelism = parallelism;
             work(world)
         })
@@ -136,6 +154,6 @@ impl Solver {
 
     /// Read-only access: the loops of `work` run on the same threads as the last step.
     pub(crate) fn look_on_threads<T: Send>(&self, work: impl FnOnce(&World) -> T + Send) -> T {
-        self.threads.run(self.world.parts.particles.len(), |_| work(&self.world))
+        self.threads.run(self.world.rows_to_share(), |_| work(&self.world))
     }
 }

@@ -7,7 +7,7 @@ use super::{SolverError, Stage};
 use crate::constraints::{ConstraintGroup, DensityGroup};
 use crate::coupling::RigidBodies;
 use crate::effects::Advected;
-use crate::math::{Real, wide};
+use crate::math::{Real, Vector, wide};
 use crate::neighbors::{Prepared, SearchPositions};
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
@@ -104,6 +104,7 @@ impl World {
     fn predict_bodies(&mut self) {
         let parts = &mut self.parts;
         let Some(rigid) = &mut parts.rigid else { return };
+        rigid.contacts.run_on(parts.parallelism);
         rigid.predict(self.clock.dt, self.clock.time, wide(parts.gravity));
         rigid.iterate_contacts();
     }
@@ -245,6 +246,29 @@ impl World {
         self.check_speeds()
     }
 
+    /// The speed from which on a run counts as diverged [m/s].
+    pub(super) fn speed_limit(&self) -> f64 {
+        ABSURD_SPEED * self.parts.spacing / self.parts.frame_time
+    }
+
+    /// Refuses accelerations of a hook by which a particle would be absurdly fast after one substep.
+    pub(super) fn check_accelerations(&self) -> Result<(), SolverError> {
+        let (particles, limit) = (&self.parts.particles, self.speed_limit() / self.clock.dt);
+        let absurd = |acceleration: &Vector| {
+            let size = wide(*acceleration).length();
+            size.is_nan() || size >= limit
+        };
+        let Some(row) = particles.acceleration.iter().position(absurd) else { return Ok(()) };
+        Err(SolverError::Hook {
+            step: self.clock.step,
+            time: self.clock.time,
+            particle: particles.id[row],
+            material: self.parts.materials[usize::from(particles.material[row])].name.clone(),
+            acceleration: wide(particles.acceleration[row]).to_array(),
+            limit,
+        })
+    }
+
     fn check_speeds(&mut self) -> Result<(), SolverError> {
         let parts = &self.parts;
         let velocities = &parts.particles.velocity;
@@ -256,8 +280,7 @@ impl World {
         let of_loose = parts.parallelism.max(loose.len(), |row| square(loose.start + row));
         let largest = parts.parallelism.max(awake.len(), square).max(of_loose).max(0.0);
         self.clock.speed = f64::from(largest).sqrt();
-        let limit = ABSURD_SPEED * parts.spacing / parts.frame_time;
-        if self.clock.speed < limit {
+        if self.clock.speed < self.speed_limit() {
             return Ok(());
         }
         let row = (0..velocities.len()).find(|&row| square(row) == largest).unwrap_or(0);

@@ -4,6 +4,20 @@ use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::parallel::{Parallelism, SERIAL_BELOW};
 
+/// Most threads of a run: more than any machine of today has, and few enough to be started in a moment.
+pub const MOST_THREADS: usize = 4096;
+
+/// A number of threads as people write it, on a command line, in the environment or in Python.
+///
+/// # Errors
+/// A sentence that follows the name of the setting, unless the text is a whole number from 1 to [`MOST_THREADS`].
+pub fn thread_count(text: &str) -> Result<usize, String> {
+    match text.trim().parse() {
+        Ok(count) if (1..=MOST_THREADS).contains(&count) => Ok(count),
+        _ => Err(format!("must be a whole number from 1 to {MOST_THREADS}, found {text:?}")),
+    }
+}
+
 /// The threads of a run. The pool is created on the first loop that is large enough, and again in a
 /// forked child, which inherits the memory of a pool but not its threads.
 pub(crate) struct Threads {
@@ -18,9 +32,9 @@ struct Made {
 }
 
 impl Threads {
-    /// At most this many threads; with one thread no pool is created.
+    /// At most this many threads, from 1 to [`MOST_THREADS`]; with one thread no pool is created.
     pub fn new(count: usize) -> Self {
-        Threads { count: count.max(1), made: Mutex::new(None) }
+        Threads { count: count.clamp(1, MOST_THREADS), made: Mutex::new(None) }
     }
 
     /// Number of threads.

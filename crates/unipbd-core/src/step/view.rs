@@ -21,6 +21,11 @@ impl<'a> SubstepView<'a> {
         self.world.clock.dt
     }
 
+    /// The speed from which on a run counts as diverged [m/s]: a million spacings in a frame.
+    pub fn speed_limit(&self) -> f64 {
+        self.world.speed_limit()
+    }
+
     /// Adds to the acceleration of one row in this substep [m/s^2]. It has no effect on kinematic particles and
     /// smoke.
     pub fn add_acceleration(&mut self, row: usize, acceleration: Vector) {

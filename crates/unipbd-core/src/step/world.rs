@@ -7,6 +7,7 @@ use super::integrate::BodyForce;
 use super::pipeline::{Features, Plan};
 use super::substeps::{Choice, SubstepRule};
 use super::timings::Timings;
+use super::watched::Watched;
 use super::{FrameReport, SolverError, Stage};
 use crate::constraints::{ConstraintGroup, CorrectionParts, Corrections, Needs, Substep};
 use crate::coupling::RigidBodies;
@@ -21,6 +22,9 @@ use crate::rows::RowIndex;
 use crate::sleep::LiquidSleep;
 use crate::sources::{EmitterSystem, RemovalRules};
 use crate::walls::Walls;
+
+/// Contacts of a body in a dense heap: six neighbours, each contact shared by two bodies.
+const CONTACTS_PER_BODY: usize = 3;
 
 /// The parts of a scene that the loop works on.
 pub(crate) struct Parts {
@@ -114,6 +118,8 @@ pub(crate) struct World {
     pub(super) velocities: Vec<Vector>,
     /// The criterion for the number of substeps of the last frame.
     pub(super) choice: Choice,
+    /// What is known about the density of each material.
+    pub(super) watched: Vec<Watched>,
     /// Effects that are limited for stability, with a warning already issued.
     pub(super) cut: Vec<&'static str>,
     /// Iterations of the frame so far.
@@ -140,6 +146,7 @@ impl World {
             events: Vec::new(),
             timings: Timings::default(),
             measured: Measured::default(),
+            watched: Vec::new(),
             cut: Vec::new(),
             corrections: Corrections::default(),
             changes: Changes::default(),
@@ -254,6 +261,12 @@ impl World {
         self.clock.done < self.clock.substeps
     }
 
+    /// Rows of the longest loop: particles, or contacts of bodies, of which each body has a few.
+    pub fn rows_to_share(&self) -> usize {
+        let bodies = self.parts.rigid.as_ref().map_or(0, |rigid| rigid.bodies.len());
+        self.parts.particles.len().max(CONTACTS_PER_BODY * bodies)
+    }
+
     /// The stages of the substep.
     pub fn finish_substep(&mut self) -> Result<(), SolverError> {
         self.wake_what_hooks_moved();
@@ -266,6 +279,7 @@ impl World {
     /// Runs the stages that end a frame and sets the clock to its end.
     pub fn end_frame(&mut self, begun: Begun) -> Result<FrameReport, SolverError> {
         self.run_all(|plan| &plan.end)?;
+        self.watch_density();
         let inverse = 1.0 / self.parts.frame_time;
         self.wall_forces = self.wall_impulses.iter().map(|impulse| *impulse * inverse).collect();
         self.clock.done = 0;

@@ -71,7 +71,8 @@ class Observable:
     @threads.setter
     def threads(self, threads: int) -> None:
         count = thread_count(threads)
-        assert count is not None
+        if count is None:
+            raise ValueError("threads must be a whole number, not None")
         self._native.set_threads(count)
 
     @property

@@ -39,15 +39,16 @@ class Recording:
 
     def _after_frame(self) -> None:
         self._left -= 1
-        if self._left == 0 and self._recorder is not None:
+        recorder = self._recorder  # another thread may leave the block meanwhile
+        if self._left == 0 and recorder is not None:
             self._left = self._stride
-            self._recorder.record(self._simulation._native)
+            recorder.record(self._simulation._native)
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self in self._simulation._recordings:
-            self._simulation._recordings.remove(self)
-        if self._recorder is not None:
-            self.frames, self.bytes = self._recorder.finish()
-            self._recorder = None
+        recorder, self._recorder = self._recorder, None
+        recordings = self._simulation._recordings
+        self._simulation._recordings = [other for other in recordings if other is not self]
+        if recorder is not None:
+            self.frames, self.bytes = recorder.finish()

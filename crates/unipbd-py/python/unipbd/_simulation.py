@@ -236,6 +236,7 @@ def _call(hook: Callable[[Substep], object]) -> Callable[[_native.Substep], None
     def call(native: _native.Substep) -> None:
         hook(Substep(native))
 
+    call.__qualname__ = getattr(hook, "__qualname__", type(hook).__qualname__)
     return call
 
 

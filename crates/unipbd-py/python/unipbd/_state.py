@@ -13,7 +13,8 @@ class State:
     """A saved moment of a simulation: everything it goes on from, bit for bit.
 
     Made by `Simulation.state`, taken by `Simulation.restore`. Can be pickled, copied, and saved to
-    a file with `save`. States are immutable.
+    a file with `save`. States are immutable. Bytes and files are read by the version of the format that
+    wrote them and by no other: a run goes on bit for bit, or not at all.
     """
 
     __slots__ = ("_state",)

@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-import os
+from . import _native
 
 
 def thread_count(threads: int | None) -> int | None:
-    """The number of threads asked for by an argument or by UNIPBD_THREADS; None for all there are."""
-    word = os.environ.get("UNIPBD_THREADS", "") if threads is None else str(threads)
-    if not word:
-        return None
-    try:
-        count = int(word)
-    except ValueError:
-        count = 0
-    if count < 1:
-        name = "UNIPBD_THREADS" if threads is None else "threads"
-        raise ValueError(f"{name} must be a whole number of at least 1, not {word!r}")
-    return count
+    """The number of threads asked for by an argument or by UNIPBD_THREADS; None for all there are.
+
+    The rule is that of the command line: a whole number from 1 to 4096, and an empty variable is none.
+    """
+    return _native.thread_count(None if threads is None else str(threads))

@@ -4,14 +4,14 @@ use std::collections::BTreeMap;
 use std::fs::File;
 use std::path::Path;
 
-use mcap::records::Record;
 use serde::Serialize;
 use serde_json::{Value, json};
 use unipbd_core::observe::Diagnostics;
 use unipbd_core::phase::Phase;
 
 use crate::exit::{Exit, Failure};
-use crate::read::{Log, LogError, Records};
+use crate::read::{Log, LogError, Record, Records};
+use crate::report::clean::one_line;
 use crate::report::format::{bytes, count, percent, plural};
 use crate::report::json::Numbers;
 use crate::report::{Console, Form};
@@ -76,11 +76,11 @@ fn read_topics(path: &Path) -> Result<BTreeMap<String, Traffic>, LogError> {
     let mut topics: BTreeMap<String, Traffic> = BTreeMap::new();
     while let Some(record) = records.next()? {
         match record {
-            Record::Channel(channel) => {
-                names.insert(channel.id, channel.topic);
+            Record::Channel { id, topic } => {
+                names.insert(id, topic);
             }
-            Record::Message { header, data } => {
-                if let Some(name) = names.get(&header.channel_id) {
+            Record::Message { channel, data, .. } => {
+                if let Some(name) = names.get(&channel) {
                     let traffic = topics.entry(name.clone()).or_default();
                     traffic.messages += 1;
                     traffic.bytes += data.len() as u64;
@@ -95,7 +95,10 @@ fn read_topics(path: &Path) -> Result<BTreeMap<String, Traffic>, LogError> {
 fn text(log: &Log, content: &Content, size: u64) -> String {
     let header = log.header();
     let setting = log.setting();
-    let mut lines = vec![if setting.name.is_empty() { log.path().display().to_string() } else { setting.name.clone() }];
+    let mut lines = vec![{
+        let name = if setting.name.is_empty() { log.path().display().to_string() } else { setting.name.clone() };
+        one_line(&name).into_owned()
+    }];
     lines.push(format!(
         "  duration    {} s, {} of 1/{} s",
         (1e6 * (content.end - content.start)).round() / 1e6,
@@ -111,12 +114,13 @@ fn text(log: &Log, content: &Content, size: u64) -> String {
     let fields = log.fields().to_string();
     lines.push(format!("  fields      {}", if fields.is_empty() { "none besides positions" } else { &fields }));
     if !header.overrides.is_empty() {
-        lines.push(format!("  changes     {}", header.overrides.join(", ")));
+        lines.push(format!("  changes     {}", one_line(&header.overrides.join(", "))));
     }
-    lines.push(format!("  written by  unipbd {}, scene sha256 {}", log.version(), header.scene_sha256()));
+    lines.push(format!("  written by  unipbd {}, scene sha256 {}", one_line(log.version()), header.scene_sha256()));
     lines.push("  topics".into());
     for (name, traffic) in &content.topics {
         let messages = plural(traffic.messages, "message");
+        let name = one_line(name);
         lines.push(format!("    {name:<20} {messages:>16}  {:>8}", bytes(traffic.bytes)));
     }
     if let Some(last) = &content.last {
@@ -127,7 +131,10 @@ fn text(log: &Log, content: &Content, size: u64) -> String {
 
 fn materials(log: &Log) -> String {
     let named = log.setting().materials.iter();
-    named.map(|material| format!("{} ({})", material.name, material.phase.name())).collect::<Vec<_>>().join(", ")
+    named
+        .map(|material| format!("{} ({})", one_line(&material.name), material.phase.name()))
+        .collect::<Vec<_>>()
+        .join(", ")
 }
 
 fn per_particle(content: &Content, size: u64) -> String {

@@ -40,6 +40,9 @@ fn depth_towards(bounds: &Bounds, point: Vector64, normal: Vector64) -> f64 {
     (center - point).dot(normal) - half.dot(normal.abs())
 }
 
+/// Cells on either side of the origin: bodies farther away share the last one.
+const FARTHEST: i32 = 1 << 30;
+
 fn median_extent(fat: &[Bounds]) -> f64 {
     let mut extents: Vec<f64> = fat.iter().map(|b| (b.high - b.low).max_element()).collect();
     if extents.is_empty() {
@@ -53,7 +56,8 @@ fn median_extent(fat: &[Bounds]) -> f64 {
 fn pairs_in_cells(fat: &[Bounds], small: &[u32], cell: f64, mut found: impl FnMut(u32, u32)) {
     // Rounding down by a comparison: without SSE 4.1 `floor` is a call.
     let column = |x: f64| {
-        let towards_zero = (x / cell) as i32;
+        // Far beyond every body, and a cell more is still a number.
+        let towards_zero = ((x / cell) as i32).clamp(-FARTHEST, FARTHEST);
         towards_zero - i32::from(f64::from(towards_zero) > x / cell)
     };
     let corner = |k: u32| (column(fat[k as usize].low.x), column(fat[k as usize].low.y));

@@ -31,6 +31,16 @@ pub(super) struct FeaturePair {
     on: u32,
 }
 
+impl FeaturePair {
+    /// Whether pieces with so many vertices have these features; a half-plane has no vertices.
+    pub fn fits(self, first: usize, second: Option<usize>) -> bool {
+        let Some(second) = second else { return (self.vertex as usize) < first };
+        let (vertex, on) = ((self.vertex & !OF_SECOND) as usize, (self.on & !VERTEX) as usize);
+        let (mine, other) = if self.vertex & OF_SECOND == 0 { (first, second) } else { (second, first) };
+        vertex < mine && on < other
+    }
+}
+
 /// Flag of a vertex of the second piece.
 const OF_SECOND: u32 = 1 << 31;
 /// Flag of a vertex in place of a face.

@@ -19,6 +19,12 @@ pub(crate) struct Point {
 }
 
 impl Point {
+    /// Whether all numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        let moments = [self.normal_a, self.normal_b, self.tangent_a, self.tangent_b];
+        [self.gap, self.normal_impulse, self.tangent_impulse].into_iter().chain(moments).all(f64::is_finite)
+    }
+
     /// Copies the impulses of a point in an earlier substep, times a factor.
     pub fn keep(&mut self, old: &Point, factor: f64) {
         self.normal_impulse = old.normal_impulse * factor;
@@ -42,6 +48,11 @@ pub(crate) struct ContactCache {
 }
 
 impl ContactCache {
+    /// Whether all numbers are finite.
+    pub fn is_finite(&self) -> bool {
+        self.approach.into_iter().chain(self.rebound).all(f64::is_finite)
+    }
+
     pub fn new(pair: u32, wall: u32, surface: Surface) -> ContactCache {
         ContactCache {
             pair,

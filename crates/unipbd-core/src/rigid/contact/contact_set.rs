@@ -3,7 +3,8 @@
 use super::collide::Touch;
 use super::contact_cache::ContactCache;
 use super::manifold::Contact;
-use super::pairs::SearchRecord;
+use super::pairs::{Pair, SearchRecord};
+use super::pieces::Pieces;
 
 /// Contacts by pair.
 #[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
@@ -35,6 +36,23 @@ pub(super) struct StepContext {
 pub(crate) type Rows<'a> = (&'a mut [Contact], &'a mut [ContactCache]);
 
 impl ContactSet {
+    /// Whether the contacts of a saved state are those of these pairs.
+    pub fn is_sound(&self, pieces: &Pieces, pairs: &[Pair]) -> bool {
+        let sound = |(contact, cache): (&Contact, &ContactCache)| {
+            pairs.get(cache.pair as usize).is_some_and(|pair| {
+                let first = pieces.view(pair.pieces.0).vertices.len();
+                let second = pieces.half_plane(pair.pieces.1).is_none();
+                let second = second.then(|| pieces.view(pair.pieces.1).vertices.len());
+                let features = cache.features[..contact.points().len().min(2)].iter();
+                contact.is_sound(pair.bodies)
+                    && cache.wall == pair.wall
+                    && cache.is_finite()
+                    && features.copied().all(|feature| feature.fits(first, second))
+            })
+        };
+        self.contacts.len() == self.caches.len() && self.contacts.iter().zip(&self.caches).all(sound)
+    }
+
     pub fn clear(&mut self) {
         self.contacts.clear();
         self.caches.clear();

@@ -41,6 +41,13 @@ pub(super) struct Islands {
 }
 
 impl Islands {
+    /// The rest times and islands of a saved state, for so many bodies.
+    pub fn from_saved(saved: Islands, bodies: usize) -> Islands {
+        let mut islands = Islands { touching: UnionFind::default(), ..saved };
+        islands.resize(bodies);
+        islands
+    }
+
     pub fn resize(&mut self, bodies: usize) {
         self.rest.resize(bodies, 0.0);
         self.calmest.resize(bodies, 0.0);

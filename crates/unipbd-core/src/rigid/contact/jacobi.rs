@@ -5,6 +5,7 @@ use super::contact_cache::ContactCache;
 use super::manifold::Contact;
 use super::pieces::NONE;
 use super::push::Push;
+use crate::parallel::Parallelism;
 use crate::rigid::{InverseMass, Twist};
 use rayon::prelude::*;
 
@@ -21,12 +22,15 @@ pub(crate) struct Jacobi {
     /// Contacts of body k: `slots[starts[k]..starts[k + 1]]`, each as 2 x contact + side.
     starts: Vec<u32>,
     slots: Vec<u32>,
+    /// Where sweeps may run: set by the run, never saved.
+    #[serde(skip)]
+    pub parallelism: Parallelism,
 }
 
 impl Jacobi {
     /// Lists the contacts of each body, if sweeps run in parallel.
     pub fn index(&mut self, contacts: &[Contact], bodies: usize) {
-        if !is_parallel(contacts) {
+        if !self.is_parallel(contacts) {
             return;
         }
         self.starts.clear();
@@ -57,7 +61,7 @@ impl Jacobi {
     ) {
         self.sums.clear();
         self.sums.resize(bodies, Twist::ZERO);
-        if !is_parallel(contacts) {
+        if !self.is_parallel(contacts) {
             for (contact, cache) in contacts.iter_mut().zip(caches) {
                 let push = rule(contact, cache);
                 self.sums[contact.a as usize] += push.on_a();
@@ -75,6 +79,10 @@ impl Jacobi {
             }
         });
         self.gather();
+    }
+
+    fn is_parallel(&self, contacts: &[Contact]) -> bool {
+        self.parallelism == Parallelism::Pool && contacts.len() >= PARALLEL_FROM
     }
 
     fn gather(&mut self) {
@@ -98,8 +106,4 @@ impl Jacobi {
             motion.angular += push.angular * response.angular;
         }
     }
-}
-
-fn is_parallel(contacts: &[Contact]) -> bool {
-    contacts.len() >= PARALLEL_FROM && rayon::current_num_threads() > 1
 }

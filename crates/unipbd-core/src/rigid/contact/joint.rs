@@ -85,6 +85,11 @@ impl Linked {
         Linked { joint, impulse, motor: 0.0, arms, middle: arms, offset, split: Default::default(), dt: 0.0 }
     }
 
+    /// Whether the impulses that last from substep to substep are finite.
+    pub fn is_finite(&self) -> bool {
+        self.impulse.is_finite() && self.motor.is_finite()
+    }
+
     pub fn bodies(&self) -> (u32, u32) {
         (self.joint.body, self.joint.other.unwrap_or(NONE))
     }

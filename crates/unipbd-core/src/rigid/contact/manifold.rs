@@ -70,6 +70,12 @@ impl Contact {
         Contact { a, b, count: 0, normal, points, effective_mass, rolling_arm, rolling_impulse: 0.0 }
     }
 
+    /// Whether the contact of a saved state can be one of these two bodies.
+    pub fn is_sound(&self, bodies: (u32, u32)) -> bool {
+        let finite = self.normal.is_finite() && self.rolling_impulse.is_finite();
+        (self.a, self.b) == bodies && self.count <= 2 && finite && self.points.iter().all(Point::is_finite)
+    }
+
     /// Whether a point with this normal can be added.
     pub fn has_room(&self, normal: Vector64) -> bool {
         self.count < 2 && self.is_along(normal)

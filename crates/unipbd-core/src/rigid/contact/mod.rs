@@ -27,6 +27,7 @@ mod pair_contacts;
 mod pairs;
 mod pieces;
 mod push;
+mod saved;
 mod settings;
 mod solver;
 mod union_find;
@@ -43,6 +44,7 @@ pub(crate) use solver::{ContactSolver, Split};
 pub(crate) use union_find::UnionFind;
 
 use crate::math::Vector64;
+use crate::parallel::Parallelism;
 use crate::rigid::Wall;
 use crate::rigid::{Bodies, InverseMass, Twist};
 use contact_cache::ContactCache;
@@ -123,9 +125,10 @@ impl Contacts {
         Contacts { solver, ..self }
     }
 
-    /// Takes the contact solver of another instance: a saved state does not contain it.
-    pub(crate) fn solve_like(&mut self, other: &Contacts) {
-        self.solver = other.solver.clone();
+    /// From now on the search and the sweeps may run on the pool of the caller, or may not.
+    pub(crate) fn run_on(&mut self, parallelism: Parallelism) {
+        self.narrow_phase.parallelism = parallelism;
+        self.jacobi.parallelism = parallelism;
     }
 
     /// Adds a joint; the bodies it links no longer collide with each other. Returns its index.

@@ -9,6 +9,7 @@ use super::manifold::Contact;
 use super::pair_contacts::PairContacts;
 use super::pairs::{Pairs, Span};
 use super::pieces::Pieces;
+use crate::parallel::Parallelism;
 use crate::rigid::Bodies;
 use crate::rigid::Wall;
 use rayon::prelude::*;
@@ -30,6 +31,9 @@ pub(super) struct NarrowPhase {
     /// Contacts found by each task of the narrow phase.
     #[serde(skip)]
     tasks: Vec<ContactSet>,
+    /// Where the search may run: set by the run, never saved.
+    #[serde(skip)]
+    pub parallelism: Parallelism,
 }
 
 impl NarrowPhase {
@@ -47,6 +51,30 @@ impl NarrowPhase {
 
     pub fn rows(&mut self) -> Rows<'_> {
         (&mut self.found.contacts, &mut self.found.caches)
+    }
+
+    /// The search of a saved state, between the pieces of this one; `None` if the state makes no sense.
+    pub fn at_saved(&self, saved: NarrowPhase, bodies: &Bodies) -> Option<NarrowPhase> {
+        let pieces = self.pieces.at_saved(&saved.pieces, bodies)?;
+        let mut pairs = self.pairs.at_saved(saved.pairs, &pieces, bodies)?;
+        let sound = [&saved.found, &saved.frozen].into_iter().all(|set| set.is_sound(&pieces, &pairs.all));
+        if !sound {
+            return None;
+        }
+        let mut active = pairs.active.iter().map(|active| active.index).peekable();
+        for (span, index) in pairs.spans.iter_mut().zip(0u32..) {
+            let is_active = active.next_if_eq(&index).is_some();
+            let set = if span.frozen { &saved.frozen } else { &saved.found };
+            let whole = span.fits(set.caches.len()) && set.caches[span.range()].iter().all(|known| known.pair == index);
+            if !whole && (is_active || span.frozen) {
+                return None;
+            }
+            if !whole {
+                *span = Span::default();
+            }
+        }
+        let (found, frozen, parallelism) = (saved.found, saved.frozen, self.parallelism);
+        Some(NarrowPhase { pieces, pairs, found, frozen, parallelism, ..NarrowPhase::default() })
     }
 
     /// Disables collisions between two bodies.
@@ -114,7 +142,7 @@ impl NarrowPhase {
         let (pieces, pairs, last, frozen) = (&self.pieces, &self.pairs, &self.found, &self.frozen);
         let search = PairContacts { pieces, pairs, bodies, moment, last, frozen };
         let active = &pairs.active;
-        if active.len() < PARALLEL_FROM || rayon::current_num_threads() == 1 {
+        if active.len() < PARALLEL_FROM || self.parallelism == Parallelism::Serial {
             active.iter().for_each(|pair| search.pair(pair.index, &mut coming));
         } else {
             tasks.resize_with(tasks.len().max(active.len().div_ceil(CHUNK)), ContactSet::default);

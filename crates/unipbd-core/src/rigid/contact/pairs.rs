@@ -50,6 +50,11 @@ pub(super) struct Span {
 }
 
 impl Span {
+    /// Whether it lies within this many contacts.
+    pub fn fits(&self, contacts: usize) -> bool {
+        self.first as usize + self.count as usize <= contacts
+    }
+
     pub fn range(&self) -> std::ops::Range<usize> {
         self.first as usize..(self.first + self.count) as usize
     }
@@ -126,6 +131,29 @@ impl Pairs {
         self.excluded.push((a.min(b), a.max(b)));
         self.excluded.sort_unstable();
         self.fat.clear();
+    }
+
+    /// Pairs of a saved state, made anew between these pieces; `None` if the state makes no sense.
+    pub fn at_saved(&self, saved: Pairs, pieces: &Pieces, bodies: &Bodies) -> Option<Pairs> {
+        let count = saved.all.len();
+        let ordered = saved.all.windows(2).all(|two| two[0].key < two[1].key);
+        let known = |&(a, b): &(u32, u32)| {
+            a < b && (b as usize) < pieces.count() && (a as usize) < pieces.all.len() && {
+                let solid = pieces.all.get(b as usize).is_none() || pieces.body_of(b) != NONE;
+                solid && may_touch(pieces, &self.excluded, bodies, a, b)
+            }
+        };
+        let keys: Vec<(u32, u32)> = saved.all.iter().map(|pair| pair.key).collect();
+        let spanned = saved.spans.len() == count && saved.sought.len() == count;
+        // Flags of bodies are read while boxes hold.
+        let flagged = saved.fat.is_empty() || saved.was_active.len() == bodies.len();
+        if !(ordered && spanned && flagged && keys.iter().all(known)) {
+            return None;
+        }
+        let all: Vec<Pair> = keys.into_iter().map(|key| Pair::new(pieces, key)).collect();
+        let listed = |active: &Active| all.get(active.index as usize).is_some_and(|pair| pair.bodies == active.bodies);
+        let rising = saved.active.windows(2).all(|two| two[0].index < two[1].index);
+        (rising && saved.active.iter().all(listed)).then(|| Pairs { all, excluded: self.excluded.clone(), ..saved })
     }
 
     /// Half-planes follow all pieces: their indices increase with the number of pieces.

@@ -193,6 +193,39 @@ impl Pieces {
         }
     }
 
+    /// These pieces, where those of a saved state are; `None` if the state has other pieces.
+    pub fn at_saved(&self, saved: &Pieces, bodies: &Bodies) -> Option<Pieces> {
+        let mut taken = self.clone();
+        taken.append_bodies(bodies);
+        if saved.known_bodies == 0 {
+            // Saved before the first substep.
+            for index in 0..taken.all.len() {
+                if let Some(pose) = bodies.poses.get(taken.all[index].body as usize) {
+                    taken.place(index, pose, Vector64::from_angle(pose.angle));
+                }
+            }
+            return Some(taken);
+        }
+        let lengths = |pieces: &Pieces| {
+            let columns = [pieces.vertices.len(), pieces.normals.len(), pieces.bounds.len()];
+            (pieces.known_bodies, pieces.all.len(), columns)
+        };
+        let finite = saved.vertices.iter().chain(&saved.normals).all(|vector| vector.is_finite())
+            && saved.bounds.iter().all(|bounds| bounds.low.is_finite() && bounds.high.is_finite());
+        let fits = finite && lengths(&taken) == lengths(saved);
+        fits.then(|| {
+            taken.vertices.clone_from(&saved.vertices);
+            taken.normals.clone_from(&saved.normals);
+            taken.bounds.clone_from(&saved.bounds);
+            taken
+        })
+    }
+
+    /// Number of pieces and half-planes.
+    pub fn count(&self) -> usize {
+        self.all.len() + self.half_planes.len()
+    }
+
     /// The body a piece belongs to; half-planes and walls have none.
     pub fn body_of(&self, piece: u32) -> u32 {
         self.all.get(piece as usize).map_or(NONE, |piece| piece.body)

@@ -3,10 +3,9 @@
 use super::checker::{Allowed, Checker, entries, number};
 use super::motion;
 use super::names::check_unique;
-use crate::scene::{BodyDescription, BodyKind, BodySolver, KeyPath, RotationRule, Side, Tank};
+use super::size::MOST_CORNERS;
+use crate::scene::{BodyDescription, BodyKind, BodySolver, KeyPath, MOST_BODIES, RotationRule, Side, Tank};
 
-/// More bodies than this are refused.
-const MOST_BODIES: f64 = 200_000.0;
 const COEFFICIENT_HINT: &str = "a Coulomb coefficient, such as 0.5; 0 is slippery";
 
 pub(super) fn check(checker: &mut Checker) {
@@ -66,6 +65,11 @@ fn check_shape(checker: &mut Checker, path: KeyPath, body: &BodyDescription) -> 
     if let Some(radius) = body.radius {
         return checker.range(path, radius, Allowed::Positive, "a length in metres");
     }
+    if body.outline.as_ref().is_some_and(|outline| outline.len() > MOST_CORNERS) {
+        let message = format!("has more than {MOST_CORNERS} corners");
+        checker.problem(path, message, "leave out corners nearer to each other than a spacing");
+        return false;
+    }
     match body.shape().check() {
         Ok(()) => true,
         Err(error) => {
@@ -121,9 +125,9 @@ fn check_solver(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {
     refuse("rolling_friction", body.rolling_friction != 0.0);
     refuse("gravity_factor", body.gravity_factor != 1.0);
     let scene = checker.scene;
-    let joined = scene.joint.iter().any(|joint| joint.body == body.name || joint.other.as_ref() == Some(&body.name));
-    let tied = scene.rope.iter().any(|rope| rope.body.as_ref() == Some(&body.name));
-    if !body.name.is_empty() && (joined || tied) {
+    let joined = || scene.joint.iter().any(|joint| joint.body == body.name || joint.other.as_ref() == Some(&body.name));
+    let tied = || scene.rope.iter().any(|rope| rope.body.as_ref() == Some(&body.name));
+    if !body.name.is_empty() && (joined() || tied()) {
         let hint = "join bodies with solver = \"pose\"";
         checker.problem(path.then("solver"), "joints and ropes do not hold a body that is particles", hint);
     }
@@ -151,8 +155,9 @@ fn check_copies(checker: &mut Checker, path: &KeyPath, body: &BodyDescription, t
     }
     let count = f64::from(copies.columns) * f64::from(copies.rows);
     *total += count;
-    if sound && *total > MOST_BODIES {
-        let message = format!("brings the scene to {} bodies; the limit is {}", number(*total), number(MOST_BODIES));
+    if sound && *total > MOST_BODIES as f64 {
+        let message =
+            format!("brings the scene to {} bodies; the limit is {}", number(*total), number(MOST_BODIES as f64));
         checker.problem(path.clone(), message, "lower `columns` or `rows`");
         sound = false;
     }
@@ -170,11 +175,10 @@ fn check_place(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {
     if body.kind != BodyKind::Dynamic || tanks.is_empty() {
         return;
     }
-    let places: Vec<[f64; 2]> = body.instances(0).into_iter().map(|(_, place)| place.into()).collect();
-    let outside = |place: &&[f64; 2]| !tanks.iter().any(|tank| holds(tank, **place));
-    if let Some([x, y]) = places.iter().find(outside) {
+    let outside = |place: &[f64; 2]| !tanks.iter().any(|tank| holds(tank, *place));
+    if let Some([x, y]) = body.places().map(<[f64; 2]>::from).find(outside) {
         let which = if body.copies.is_some() { "a copy of the body" } else { "the body" };
-        let message = format!("{which} starts outside every tank, at [{}, {}]", number(*x), number(*y));
+        let message = format!("{which} starts outside every tank, at [{}, {}]", number(x), number(y));
         checker.problem(path.then("position"), message, "move it inside, or open that side of the tank");
     }
 }

@@ -1,4 +1,6 @@
-use crate::scene::{KeyPath, Problems, Scene};
+use std::collections::HashMap;
+
+use crate::scene::{KeyPath, MaterialRef, Problems, Scene};
 
 /// Collects the problems of one scene.
 pub(super) struct Checker<'a> {
@@ -6,6 +8,8 @@ pub(super) struct Checker<'a> {
     pub(super) problems: Problems,
     /// The spacing, unless it is at fault itself [m].
     pub(super) spacing: Option<f64>,
+    /// The first material of each name, by index.
+    pub(super) materials: HashMap<&'a str, MaterialRef<'a>>,
     /// Whether particle counts and coordinates are within bounds, so that shapes may be compared.
     pub(super) size_is_sane: bool,
 }
@@ -43,7 +47,11 @@ impl<'a> Checker<'a> {
     pub(super) fn new(scene: &'a Scene) -> Self {
         let sane = scene.spacing > 0.0 && scene.spacing.is_finite();
         let spacing = sane.then_some(scene.spacing);
-        Checker { scene, problems: Problems::default(), spacing, size_is_sane: false }
+        let mut materials = HashMap::new();
+        for material in scene.materials() {
+            materials.entry(material.name()).or_insert(material);
+        }
+        Checker { scene, problems: Problems::default(), spacing, materials, size_is_sane: false }
     }
 
     /// Notes a problem.

@@ -1,11 +1,28 @@
 //! Joints, and the names of bodies they refer to.
 
+use std::collections::HashSet;
+
 use super::checker::{Allowed, Checker, entries};
-use super::names::{excerpt, hint_for_unknown};
-use crate::scene::{JointDescription, JointRule, KeyPath};
+use super::names::{HINTED, excerpt, hint_for_unknown};
+use crate::scene::{JointDescription, JointRule, KeyPath, Scene};
+
+/// The names of all bodies.
+pub(super) struct BodyNames {
+    all: HashSet<String>,
+    /// The first of them, for hints.
+    first: Vec<String>,
+}
+
+impl BodyNames {
+    pub(super) fn of(scene: &Scene) -> BodyNames {
+        let names = scene.body_names();
+        let first = names.iter().take(HINTED).cloned().collect();
+        BodyNames { all: names.into_iter().collect(), first }
+    }
+}
 
 pub(super) fn check(checker: &mut Checker) {
-    let names = checker.scene.body_names();
+    let names = BodyNames::of(checker.scene);
     for (path, joint) in entries("joint", &checker.scene.joint) {
         check_body(checker, path.then("body"), &joint.body, &names);
         if let Some(other) = &joint.other {
@@ -23,14 +40,14 @@ pub(super) fn check(checker: &mut Checker) {
 }
 
 /// Notes the name of a body that does not exist.
-pub(super) fn check_body(checker: &mut Checker, path: KeyPath, name: &str, names: &[String]) {
-    if names.iter().any(|known| known == name) {
+pub(super) fn check_body(checker: &mut Checker, path: KeyPath, name: &str, names: &BodyNames) {
+    if names.all.contains(name) {
         return;
     }
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let hint = match names.is_empty() {
+    let first: Vec<&str> = names.first.iter().map(String::as_str).collect();
+    let hint = match first.is_empty() {
         true => "the scene has no [[body]]".to_owned(),
-        false => hint_for_unknown(name, &names, "bodies"),
+        false => hint_for_unknown(name, &first, "bodies"),
     };
     checker.problem(path, format!("there is no body \"{}\"", excerpt(name)), hint);
 }

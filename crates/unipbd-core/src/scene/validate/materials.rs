@@ -1,7 +1,7 @@
 //! Liquids, gases, smokes, and the names by which others refer to them.
 
 use super::checker::{Allowed, Checker, entries};
-use super::names::{check_unique, excerpt, hint_for_unknown, list};
+use super::names::{HINTED, check_unique, excerpt, hint_for_unknown, list};
 use crate::phase::{MaterialIndex, Phase};
 use crate::scene::{KeyPath, Liquid, MaterialRef, Scene};
 
@@ -102,7 +102,7 @@ pub(super) fn check_reference(checker: &mut Checker, path: KeyPath, name: &str, 
     if name.trim().is_empty() {
         return checker.problem(path, "names no material", "write the name of a material of this scene");
     }
-    if let Some((_, material)) = checker.scene.material(name) {
+    if let Some(material) = checker.materials.get(name).copied() {
         if !wanted.contains(&material.phase()) {
             let message = format!("\"{}\" is a {}, not {}", excerpt(name), material.phase().name(), in_words(wanted));
             checker.problem(path, message, wrong_phase_hint(checker.scene, wanted));
@@ -110,7 +110,7 @@ pub(super) fn check_reference(checker: &mut Checker, path: KeyPath, name: &str, 
         return;
     }
     // A material whose own name is at fault may be the one that is meant.
-    if checker.scene.materials().any(|material| material.name().trim().is_empty()) {
+    if checker.materials.keys().any(|name| name.trim().is_empty()) {
         return;
     }
     let hint = unknown_hint(checker.scene, name, wanted);
@@ -118,7 +118,7 @@ pub(super) fn check_reference(checker: &mut Checker, path: KeyPath, name: &str, 
 }
 
 fn unknown_hint(scene: &Scene, name: &str, wanted: &[Phase]) -> String {
-    let names: Vec<&str> = scene.materials().map(|material| material.name()).collect();
+    let names: Vec<&str> = scene.materials().map(|material| material.name()).take(HINTED).collect();
     if names.is_empty() {
         let table = wanted.first().map_or("liquid", |phase| phase.name());
         return format!("add a table [[{table}]] with name = \"{}\"", excerpt(name));
@@ -128,7 +128,7 @@ fn unknown_hint(scene: &Scene, name: &str, wanted: &[Phase]) -> String {
 
 fn wrong_phase_hint(scene: &Scene, wanted: &[Phase]) -> String {
     let fitting = scene.materials().filter(|material| wanted.contains(&material.phase()));
-    let names: Vec<&str> = fitting.map(|material| material.name()).collect();
+    let names: Vec<&str> = fitting.map(|material| material.name()).take(HINTED).collect();
     if names.is_empty() { format!("the scene has no {}", wanted[0].name()) } else { list("possible are", &names) }
 }
 

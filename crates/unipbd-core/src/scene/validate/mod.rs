@@ -6,6 +6,7 @@
 mod bodies;
 mod checker;
 mod environment;
+mod extremes;
 mod finite;
 mod geometry;
 mod joints;
@@ -21,10 +22,12 @@ mod ropes;
 mod settings;
 mod size;
 mod sources;
+mod twins;
 mod walls;
 
 use super::{Problems, Scene};
 use checker::Checker;
+pub use settings::{FRAME_RATES, LONGEST_DURATION};
 pub(crate) use size::FARTHEST;
 
 impl Scene {
@@ -43,8 +46,11 @@ impl Scene {
         joints::check(&mut checker);
         regions::check(&mut checker);
         ropes::check(&mut checker);
+        extremes::check(&mut checker);
+        twins::check(&mut checker);
         size::check(&mut checker);
         if checker.size_is_sane {
+            twins::check_bodies(&mut checker);
             overlap::check(&mut checker);
             placement::check(&mut checker);
         }

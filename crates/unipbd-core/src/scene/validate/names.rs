@@ -22,9 +22,12 @@ pub(super) fn check_unique<'n>(
     }
 }
 
+/// Names that a hint compares with: there is nothing to be gained from thousands.
+pub(super) const HINTED: usize = 500;
+
 /// The hint for a name that nothing has: the one that is likely meant, or all there are.
 pub(super) fn hint_for_unknown(name: &str, names: &[&str], things: &str) -> String {
-    match nearest(name, names.iter().copied()) {
+    match nearest(name, names.iter().copied().take(HINTED)) {
         Some(near) => format!("did you mean \"{near}\"?"),
         None => list(&format!("the {things} are"), names),
     }

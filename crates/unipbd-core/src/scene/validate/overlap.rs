@@ -1,5 +1,8 @@
 //! Blocks and discs that put particles in the same place.
 
+use std::cmp::Ordering;
+use std::collections::BTreeSet;
+
 use super::checker::{Checker, rounded};
 use super::geometry::Shape;
 use crate::scene::layout::block_counts;
@@ -85,24 +88,72 @@ fn lattices(scene: &Scene, spacing: f64) -> Vec<Lattice> {
     lattices
 }
 
+/// For each lattice an earlier one that it overlaps, with the distance of two particles [m].
+///
+/// A line sweeps over the plane from left to right. The lattices that it crosses are sorted by their lower ends; one that
+/// overlaps is taken out at once, so the others hardly overlap, and each new one meets a few of them only.
+fn sweep(lattices: &[Lattice], spacing: f64) -> Vec<Option<(usize, f64)>> {
+    let mut found = vec![None; lattices.len()];
+    let mut order: Vec<usize> = (0..lattices.len()).collect();
+    order.sort_by(|&a, &b| lattices[a].least(0).total_cmp(&lattices[b].least(0)));
+    let mut ends: BTreeSet<(Ordered, usize)> = BTreeSet::new();
+    let mut crossed: BTreeSet<(Ordered, usize)> = BTreeSet::new();
+    // No lattice that was crossed is taller.
+    let mut tallest = 0.0_f64;
+    for new in order {
+        let [left, low, high] = [lattices[new].least(0), lattices[new].least(1), lattices[new].most(1)];
+        while let Some(&(end, done)) = ends.first().filter(|(end, _)| end.0 + spacing < left) {
+            ends.remove(&(end, done));
+            crossed.remove(&(Ordered(lattices[done].least(1)), done));
+        }
+        let range = (Ordered(low - tallest - spacing), 0)..=(Ordered(high + spacing), usize::MAX);
+        let near =
+            crossed.range(range).map(|(_, other)| *other).filter(|&other| lattices[other].most(1) + spacing >= low);
+        let mut met = Vec::new();
+        for other in near {
+            let (first, later) = (new.min(other), new.max(other));
+            if let Some(distance) = lattices[first].overlap(&lattices[later]) {
+                found[later] = Some((first, distance));
+                met.push(later);
+                if later == new {
+                    break;
+                }
+            }
+        }
+        for &later in met.iter().filter(|&&later| later != new) {
+            crossed.remove(&(Ordered(lattices[later].least(1)), later));
+        }
+        if !met.contains(&new) {
+            tallest = tallest.max(high - low);
+            crossed.insert((Ordered(low), new));
+            ends.insert((Ordered(lattices[new].most(0)), new));
+        }
+    }
+    found
+}
+
+/// A finite number with an order.
+#[derive(Clone, Copy, PartialEq)]
+struct Ordered(f64);
+
+impl Eq for Ordered {}
+
+impl PartialOrd for Ordered {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Ordered {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.0.total_cmp(&other.0)
+    }
+}
+
 pub(super) fn check(checker: &mut Checker) {
     let Some(spacing) = checker.spacing else { return };
     let lattices = lattices(checker.scene, spacing);
-    let mut order: Vec<usize> = (0..lattices.len()).collect();
-    order.sort_by(|&a, &b| lattices[a].least(0).total_cmp(&lattices[b].least(0)));
-    // A later entry is told about the first one it overlaps.
-    let mut found: Vec<Option<(usize, f64)>> = vec![None; lattices.len()];
-    for (place, &a) in order.iter().enumerate() {
-        let end = lattices[a].most(0) + spacing;
-        for &b in order[place + 1..].iter().take_while(|&&b| lattices[b].least(0) <= end) {
-            let (first, later) = (a.min(b), a.max(b));
-            if found[later].is_none_or(|(other, _)| first < other)
-                && let Some(distance) = lattices[first].overlap(&lattices[later])
-            {
-                found[later] = Some((first, distance));
-            }
-        }
-    }
+    let found = sweep(&lattices, spacing);
     for (later, first, distance) in found.iter().enumerate().filter_map(|(i, f)| f.map(|(other, d)| (i, other, d))) {
         let other = &lattices[first].path;
         let apart = if distance < spacing * 1e-6 {

@@ -1,12 +1,12 @@
 //! Ropes.
 
 use super::checker::{Allowed, Checker, entries, rounded};
-use super::joints::check_body;
+use super::joints::{BodyNames, check_body};
 use super::materials::check_reference;
 use crate::phase::Phase;
 
 pub(super) fn check(checker: &mut Checker) {
-    let names = checker.scene.body_names();
+    let names = BodyNames::of(checker.scene);
     for (path, rope) in entries("rope", &checker.scene.rope) {
         check_reference(checker, path.then("material"), &rope.material, &[Phase::Solid, Phase::Liquid]);
         checker.range(path.then("compliance"), rope.compliance, Allowed::NotNegative, "in m/N; 0 does not stretch");

@@ -6,7 +6,9 @@ use crate::scene::{KeyPath, Substeps};
 /// Spacings outside this range leave the reach of single precision in the kernels, which hold h^-4 [m].
 const SPACING: (f64, f64) = (1e-6, 1e6);
 /// Longest run [s]: about 12 days, 60 million frames at the default rate.
-pub(super) const LONGEST_DURATION: f64 = 1e6;
+pub const LONGEST_DURATION: f64 = 1e6;
+/// Output frames per second [1/s].
+pub const FRAME_RATES: (f64, f64) = (1.0, 10_000.0);
 /// Largest acceleration [m/s^2] and speed [m/s]: far above any sensible scene, far below overflow.
 const HUGE: f64 = 1e9;
 
@@ -44,7 +46,7 @@ fn check_time(checker: &mut Checker) {
         }
     }
     let hint = "output frames per simulated second, such as 60";
-    checker.range(KeyPath::key("fps"), scene.fps, Allowed::Between(1.0, 10_000.0), hint);
+    checker.range(KeyPath::key("fps"), scene.fps, Allowed::Between(FRAME_RATES.0, FRAME_RATES.1), hint);
 }
 
 fn check_solver(checker: &mut Checker) {

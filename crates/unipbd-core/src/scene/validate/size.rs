@@ -2,8 +2,10 @@
 
 use super::checker::{Checker, entries, number, rounded};
 use super::settings::LONGEST_DURATION;
+use crate::math::Vector64;
+use crate::phase::Phase;
 use crate::scene::layout::particle_counts;
-use crate::scene::{KeyPath, Scene};
+use crate::scene::{KeyPath, MOST_BODIES, Scene, crowd};
 
 /// Scenes with this many particles are refused before anything is allocated.
 const TOO_MANY_PARTICLES: f64 = 1e8;
@@ -12,7 +14,75 @@ pub(crate) const FARTHEST: f64 = 1e6;
 
 pub(super) fn check(checker: &mut Checker) {
     let Some(spacing) = checker.spacing else { return };
-    checker.size_is_sane = check_counts(checker) && check_coordinates(checker, spacing);
+    let counted = check_counts(checker);
+    let placed = check_coordinates(checker, spacing);
+    let small = check_bodies(checker, spacing);
+    checker.size_is_sane = counted && placed && small;
+    if checker.size_is_sane {
+        check_crowding(checker, spacing);
+    }
+}
+
+/// Scenes with more samples of bodies than this are refused before anything is allocated.
+const TOO_MANY_SAMPLES: f64 = 1e7;
+/// Most corners of one outline: its checks take time with their square.
+pub(super) const MOST_CORNERS: usize = 4096;
+
+/// Notes bodies that are too many, too large, or filled by too many samples.
+fn check_bodies(checker: &mut Checker, spacing: f64) -> bool {
+    let (mut sane, mut total, mut bodies) = (true, 0.0, 0.0);
+    for (path, body) in entries("body", &checker.scene.body) {
+        if body.outline.as_ref().is_some_and(|outline| outline.len() > MOST_CORNERS) {
+            sane = false;
+            continue;
+        }
+        let (low, high) = body.shape().bounds();
+        let extent = high - low;
+        let copies = body.copies.as_ref().map_or(1.0, |copies| f64::from(copies.columns) * f64::from(copies.rows));
+        bodies += copies;
+        if !extent.is_finite() {
+            continue;
+        }
+        let limit = FARTHEST * spacing;
+        if extent.max_element() > limit {
+            let message = format!(
+                "is {} m large; the limit is {FARTHEST} spacings ({} m)",
+                rounded(extent.max_element()),
+                rounded(limit)
+            );
+            checker.problem(path, message, "make it smaller or raise `spacing`");
+            sane = false;
+            continue;
+        }
+        // Each sample is compared with each side.
+        let sides = body.outline.as_ref().map_or(1.0, |outline| (outline.len() as f64 / 8.0).max(1.0));
+        total += (extent.x / spacing).max(1.0) * (extent.y / spacing).max(1.0) * copies * sides;
+        if total > TOO_MANY_SAMPLES {
+            let message = format!(
+                "brings the bodies to about {} samples; the limit is {}",
+                rounded(total),
+                number(TOO_MANY_SAMPLES)
+            );
+            checker.problem(path, message, "make it smaller, raise `spacing`, or use walls: [[tank]] and [[obstacle]]");
+            return false;
+        }
+    }
+    sane && bodies <= MOST_BODIES as f64
+}
+
+/// Notes points that are crowded into one place.
+fn check_crowding(checker: &mut Checker, spacing: f64) {
+    let reach = checker.scene.solver.kernel_radius * spacing;
+    if !(reach > 0.0 && reach.is_finite()) {
+        return;
+    }
+    let smoke = |name: &str| checker.materials.get(name).is_some_and(|known| known.phase() == Phase::Smoke);
+    let sets = checker.scene.points.iter().filter(|set| !smoke(&set.material));
+    let points = sets.flat_map(|set| set.positions.iter().map(|&place| Vector64::from(place)));
+    if let Some(crowd) = crowd(points, [], reach) {
+        let hint = "leave about one spacing between points: each two of them in a kernel are a pair";
+        checker.problem(KeyPath::key("points"), format!("there are {crowd}"), hint);
+    }
 }
 
 fn check_counts(checker: &mut Checker) -> bool {

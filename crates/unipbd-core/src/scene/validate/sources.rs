@@ -55,7 +55,7 @@ fn check_points(checker: &mut Checker, path: &KeyPath, points: &Points) {
     check_throw(checker, path.then("velocity"), points.velocity[0].hypot(points.velocity[1]));
     let fastest = points.velocities.iter().map(|v| v[0].hypot(v[1])).fold(0.0, f64::max);
     check_throw(checker, path.then("velocities"), fastest);
-    let smoke = checker.scene.smoke.iter().any(|smoke| smoke.name == points.material);
+    let smoke = checker.materials.get(points.material.as_str()).is_some_and(|known| known.phase() == Phase::Smoke);
     if smoke && points.motion == PointMotion::Scripted {
         checker.problem(path.then("motion"), "smoke moves with its carrier, not by a script", "leave it out");
     }

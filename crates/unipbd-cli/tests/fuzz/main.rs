@@ -1,0 +1,7 @@
+//! Scene text, overrides and logs with mistakes of every kind: read, or refused with an error.
+#![allow(unsafe_code)]
+
+#[path = "../../../../tests/fuzz/harness.rs"]
+mod harness;
+mod logs;
+mod scenes;
