@@ -108,12 +108,13 @@ fn write(bytes: &mut [u8], place: usize, word: &[u8]) {
     bytes[place..end].copy_from_slice(&word[..end - place]);
 }
 
-/// Runs a target on as many inputs as the environment asks for, or else on `usual` ones.
+/// Runs a target on as many inputs as the environment asks for, from `UNIPBD_FUZZ_FIRST` on, or else on `usual` ones.
 pub fn fuzz(target: &str, usual: u64, make: impl Fn(&mut Dice) -> Vec<u8>, run: impl Fn(&[u8])) {
     let number = |name: &str| std::env::var(name).ok().and_then(|text| text.parse::<u64>().ok());
     let (cases, seed) = (number("UNIPBD_FUZZ_CASES").unwrap_or(usual), number("UNIPBD_FUZZ_SEED").unwrap_or(0));
     let (mut slowest, mut largest, mut failures) = ((Duration::ZERO, 0), 0, Vec::new());
-    for case in 0..cases {
+    let first = number("UNIPBD_FUZZ_FIRST").unwrap_or(0);
+    for case in first..first + cases {
         let input = make(&mut Dice(Rng::new(seed, case)));
         let before = HELD.load(Relaxed);
         PEAK.store(before, Relaxed);

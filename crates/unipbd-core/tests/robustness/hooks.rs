@@ -1,6 +1,9 @@
-//! Accelerations of hooks.
+//! What hooks ask for.
 
 use super::pool;
+use unipbd_core::math::Vector64;
+use unipbd_core::rigid::Twist;
+use unipbd_core::scene::BodyDescription;
 use unipbd_core::{BuildOptions, SolverError, Vector};
 
 #[test]
@@ -29,4 +32,25 @@ fn an_absurd_acceleration_is_an_error_with_its_value_and_the_run_goes_on() {
 
 fn substep_id(solver: &unipbd_core::Solver) -> u32 {
     solver.ids()[7]
+}
+
+#[test]
+fn bodies_that_a_hook_throws_absurdly_far_break_nothing() {
+    let mut scene = pool();
+    for x in [1.3, 1.6, 1.9] {
+        scene.body.push(BodyDescription::disc(0.1, [x - 0.05, 1.5]));
+    }
+    for speed in [1e12, -1e12, 1e15, -1e15, 1e30, -1e30] {
+        let mut solver = scene.build(BuildOptions { threads: Some(1), seed: None }).unwrap();
+        for frame in 0..4 {
+            let thrown = solver.step_frame_with(|substep| -> Result<(), SolverError> {
+                if frame == 1 {
+                    let velocity = Twist { linear: Vector64::splat(speed), angular: 0.0 };
+                    (0..2).for_each(|body| substep.set_body_velocity(body, velocity));
+                }
+                Ok(())
+            });
+            assert!(thrown.is_ok() || matches!(thrown, Err(SolverError::Diverged { .. })), "{thrown:?}");
+        }
+    }
 }

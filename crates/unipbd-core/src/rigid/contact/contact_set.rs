@@ -1,6 +1,6 @@
 //! The contacts of a search, and the substep of the search.
 
-use super::collide::Touch;
+use super::collide::{FeaturePair, Touch};
 use super::contact_cache::ContactCache;
 use super::manifold::Contact;
 use super::pairs::{Pair, SearchRecord};
@@ -43,11 +43,11 @@ impl ContactSet {
                 let first = pieces.view(pair.pieces.0).vertices.len();
                 let second = pieces.half_plane(pair.pieces.1).is_none();
                 let second = second.then(|| pieces.view(pair.pieces.1).vertices.len());
-                let features = cache.features[..contact.points().len().min(2)].iter();
+                let fits = |feature: &FeaturePair| feature.fits(first, second);
                 contact.is_sound(pair.bodies)
                     && cache.wall == pair.wall
                     && cache.is_finite()
-                    && features.copied().all(|feature| feature.fits(first, second))
+                    && cache.features[..contact.points().len()].iter().all(fits)
             })
         };
         self.contacts.len() == self.caches.len() && self.contacts.iter().zip(&self.caches).all(sound)
