@@ -1,18 +1,15 @@
 //! The contacts of a search, and the substep of the search.
 
-use super::collide::Touch;
 use super::contact_cache::ContactCache;
 use super::manifold::Contact;
-use super::pairs::SearchRecord;
+use super::touch::Touch;
+use crate::math::Vector64;
 
 /// Contacts by pair.
 #[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct ContactSet {
     pub contacts: Vec<Contact>,
     pub caches: Vec<ContactCache>,
-    /// Pairs that were searched again, with the record of the search.
-    #[serde(skip)]
-    pub renewed: Vec<(u32, SearchRecord)>,
     /// Buffer of the search.
     #[serde(skip)]
     pub touches: Vec<Touch>,
@@ -24,9 +21,7 @@ pub(super) struct StepContext {
     /// Its length [s].
     pub dt: f64,
     /// Gravity [m/s^2].
-    pub gravity: f64,
-    /// Scale factor of the impulses of the last substep in this one.
-    pub kept: f64,
+    pub gravity: Vector64,
     /// Sliding speed below which a contact sticks [m/s].
     pub slow: f64,
 }
@@ -38,18 +33,10 @@ impl ContactSet {
     pub fn clear(&mut self) {
         self.contacts.clear();
         self.caches.clear();
-        self.renewed.clear();
     }
 
     pub fn append(&mut self, other: &mut ContactSet) {
         self.contacts.append(&mut other.contacts);
         self.caches.append(&mut other.caches);
-        self.renewed.append(&mut other.renewed);
-    }
-
-    /// Removes contacts beyond this number.
-    pub fn truncate(&mut self, length: usize) {
-        self.contacts.truncate(length);
-        self.caches.truncate(length);
     }
 }

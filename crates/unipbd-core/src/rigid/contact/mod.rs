@@ -5,7 +5,7 @@
 //! 2012, "Mass splitting for jitter-free parallel rigid body simulation"). Overlap never becomes
 //! velocity: a separate pass removes it from the positions. A substep calls, in this order:
 //!
-//! 1. [`Contacts::begin_substep`] finds the contacts,
+//! 1. [`Contacts::begin_substep`] finds the contacts, once per frame unless a body leaves its prediction,
 //! 2. [`Bodies::predict`] and [`Contacts::warm_start`],
 //! 3. [`Contacts::iterate`], before and again after the fluid has pushed the bodies,
 //! 4. [`Bodies::integrate`],
@@ -18,6 +18,8 @@ mod collide;
 mod complementarity;
 mod contact_cache;
 mod contact_set;
+mod exposure;
+mod frames;
 mod islands;
 mod jacobi;
 mod joint;
@@ -27,8 +29,11 @@ mod pair_contacts;
 mod pairs;
 mod pieces;
 mod push;
+mod reach;
+mod rebound;
 mod settings;
 mod solver;
+mod touch;
 mod union_find;
 
 pub use islands::SleepSettings;
@@ -152,15 +157,15 @@ impl Contacts {
         self.up = -gravity.normalize_or_zero();
         self.islands.resize(bodies.len());
         self.islands.wake_pushed(bodies);
-        let kept = self.solver.kept() * self.warm_factor;
-        let moment = StepContext { dt, gravity: self.gravity, kept, slow: 2.0 * self.gravity * dt };
+        self.narrow_phase.age(self.solver.kept() * self.warm_factor);
+        let moment = StepContext { dt, gravity, slow: 2.0 * self.gravity * dt };
         loop {
             self.narrow_phase.find(bodies, &moment);
-            if !self.islands.wake_touched(bodies, self.narrow_phase.candidates(), &self.joints, dt) {
+            if !self.islands.wake_touched(bodies, self.narrow_phase.contacts(), &self.joints, dt) {
                 break;
             }
         }
-        self.narrow_phase.adopt();
+        self.narrow_phase.pass(dt);
     }
 
     /// Splits the mass of each body among its contacts and applies the impulses kept from the last substep.
@@ -240,6 +245,10 @@ impl Contacts {
         let (dt, slowest) = (self.dt, 2.0 * self.gravity * self.dt);
         let mut rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches());
         if rows.any(|(contact, cache)| contact.rebounds(cache, slowest)) {
+            let (contacts, caches) = self.narrow_phase.rows();
+            for (contact, cache) in contacts.iter().zip(caches).filter(|(c, cache)| c.rebounds(cache, slowest)) {
+                contact.begin_rebound(cache, dt, slowest);
+            }
             for _ in 0..self.settings.restitution_iterations {
                 let velocities = &bodies.velocities;
                 self.jacobi.sweep(self.narrow_phase.rows(), bodies.len(), |contact, cache| {
@@ -263,8 +272,8 @@ impl Contacts {
         let rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches());
         for (contact, cache) in rows.filter(|(_, cache)| cache.wall != NONE) {
             for (point, rebound) in contact.points().iter().zip(cache.rebound) {
-                let normal = contact.normal * (point.normal_impulse / self.dt + rebound);
-                let tangent = contact.normal.perp() * (point.tangent_impulse / self.dt);
+                let normal = contact.normal * (point.normal_impulse / self.dt + rebound.normal);
+                let tangent = contact.normal.perp() * (point.tangent_impulse / self.dt + rebound.tangent);
                 self.wall_impulses[cache.wall as usize] -= normal + tangent;
             }
         }
@@ -274,10 +283,10 @@ impl Contacts {
     pub fn depenetrate(&mut self, bodies: &mut Bodies) {
         let (how, dt) = (&self.settings.depenetration, self.dt);
         let (displacements, sizes) = (&bodies.displacements, &bodies.sizes);
-        self.jacobi.sweep(self.narrow_phase.rows(), bodies.len(), |contact, _| {
+        self.jacobi.sweep(self.narrow_phase.rows(), bodies.len(), |contact, cache| {
             let size = sizes[contact.a as usize];
             let size = if contact.b == NONE { size } else { size.min(sizes[contact.b as usize]) };
-            contact.separate(displacements, how, size, dt)
+            contact.separate(cache, displacements, how, size, dt)
         });
         for linked in self.joints.iter_mut().filter(|linked| is_movable(linked, bodies)) {
             let pushes = linked.separate(bodies);
@@ -298,6 +307,7 @@ impl Contacts {
         for (force, impulse) in self.wall_forces.iter_mut().zip(&mut self.wall_impulses) {
             *force = std::mem::take(impulse) / frame_time;
         }
+        self.narrow_phase.begin_frame(frame_time);
         if let Some(settings) = &self.settings.sleep {
             let fell_asleep =
                 self.islands.sleep(bodies, self.narrow_phase.contacts(), &self.joints, settings, frame_time);
@@ -338,8 +348,8 @@ impl Contacts {
                 wall: index(cache.wall),
                 normal: contact.normal,
                 gap: point.gap,
-                normal_force: point.normal_impulse / (self.dt * self.dt) + cache.rebound[k] / self.dt,
-                friction_force: point.tangent_impulse / (self.dt * self.dt),
+                normal_force: point.normal_impulse / (self.dt * self.dt) + cache.rebound[k].normal / self.dt,
+                friction_force: point.tangent_impulse / (self.dt * self.dt) + cache.rebound[k].tangent / self.dt,
             }
         };
         let rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches());

@@ -53,3 +53,12 @@ impl Default for Depenetration {
         Depenetration { slop: 1e-4, fraction: 0.1, deep: 0.01, deep_fraction: 0.4, speed: 3.0 }
     }
 }
+
+impl Depenetration {
+    /// Minus the part of an overlap that a substep of length `dt` [s] removes between bodies of this size [m].
+    pub(super) fn lacking(&self, overlap: f64, size: f64, dt: f64) -> f64 {
+        let overlap = overlap - self.slop * size;
+        let deep = (overlap - self.deep * size).max(0.0);
+        -(self.fraction * overlap + (self.deep_fraction - self.fraction) * deep).clamp(0.0, self.speed * dt)
+    }
+}
