@@ -26,8 +26,8 @@ pub(super) fn build(scene: &Scene) -> (Bodies, Contacts) {
             let _ = bodies.add(spec);
         }
     }
-    let ContactDescription { relaxation, iterations } = scene.contacts;
-    let settings = ContactSettings { relaxation, iterations, ..ContactSettings::default() };
+    let ContactDescription { method, relaxation, iterations } = scene.contacts;
+    let settings = ContactSettings { method, relaxation, iterations, ..ContactSettings::default() };
     let mut contacts = match scene.legacy.changes_contacts() {
         false => Contacts::new(&walls(scene), settings),
         true => legacy::contacts(&walls(scene), settings, &scene.legacy),

@@ -1,4 +1,4 @@
-use super::world::{GRAVITY, World, at, body, floor, unit_box};
+use super::world::{GRAVITY, World, at, body, floor, mirrored, unit_box};
 use unipbd_core::Vector64;
 use unipbd_core::rigid::Wall;
 use unipbd_core::rigid::contact::ContactSettings;
@@ -63,7 +63,8 @@ fn sleeping_does_not_move_a_pile() {
 
 #[test]
 fn mirrored_pile_stays_mirrored_when_it_sleeps() {
-    let mut world = World::with_settings(&[floor(Surface::default())], ContactSettings::default());
+    let settings = ContactSettings { sleep: ContactSettings::default().sleep, ..mirrored() };
+    let mut world = World::with_settings(&[floor(Surface::default())], settings);
     for row in 0..6u32 {
         for k in 0..6 - row {
             let x = 1.05 * (f64::from(k) - 0.5 * f64::from(5 - row));

@@ -209,6 +209,17 @@ impl Contact {
         push
     }
 
+    /// The push of all impulses of a substep of length `dt` [s], those of a rebound included [N s].
+    pub fn total_push(&self, cache: &ContactCache, dt: f64) -> Push {
+        let moment = self.rolling_impulse / dt;
+        let mut push = Push { linear: Vector64::ZERO, angular_a: moment, angular_b: moment };
+        for (point, rebound) in self.points().iter().zip(&cache.rebound) {
+            let (normal, tangent) = (point.normal_impulse / dt, point.tangent_impulse / dt);
+            self.add_push(&mut push, point, normal + rebound.normal, tangent + rebound.tangent);
+        }
+        push
+    }
+
     pub fn add_push(&self, push: &mut Push, point: &Point, normal: f64, tangent: f64) {
         push.linear += self.normal * normal + self.tangent() * tangent;
         push.angular_a += point.normal_a * normal + point.tangent_a * tangent;

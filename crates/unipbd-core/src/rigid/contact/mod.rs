@@ -1,9 +1,10 @@
-//! Contacts and joints of rigid bodies: split Jacobi on the displacements of a substep.
+//! Contacts and joints of rigid bodies, solved on the displacements of a substep.
 //!
 //! Contacts are constraints on the displacement u of a substep, warm started with the impulses of the
-//! last one and solved by Jacobi sweeps in which a body's mass is split among its contacts (Tonge et al.
-//! 2012, "Mass splitting for jitter-free parallel rigid body simulation"). Overlap never becomes
-//! velocity: a separate pass removes it from the positions. A substep calls, in this order:
+//! last one and solved by Gauss-Seidel sweeps, forwards and backwards in turn; or by Jacobi sweeps in which a body's
+//! mass is split among its contacts (Tonge et al. 2012, "Mass splitting for jitter-free parallel rigid body
+//! simulation"). Overlap never becomes velocity: a separate pass removes it from the positions. A substep calls, in
+//! this order:
 //!
 //! 1. [`Contacts::begin_substep`] finds the contacts, once per frame unless a body leaves its prediction,
 //! 2. [`Bodies::predict`] and [`Contacts::warm_start`],
@@ -33,6 +34,7 @@ mod reach;
 mod rebound;
 mod settings;
 mod solver;
+mod sweep;
 mod touch;
 mod union_find;
 
@@ -40,29 +42,32 @@ pub use islands::SleepSettings;
 pub use joint::{DistanceRule, Joint, JointKind, Motor};
 pub use settings::{ContactSettings, Depenetration};
 
-pub(crate) use contact_set::Rows;
-pub(crate) use jacobi::Jacobi;
+pub(crate) use joint::Linked;
 pub(crate) use manifold::{Contact, entry};
 pub(crate) use push::Push;
 pub(crate) use solver::{ContactSolver, Split};
+pub(crate) use sweep::Sweep;
 pub(crate) use union_find::UnionFind;
 
 use crate::math::Vector64;
 use crate::rigid::Wall;
+use crate::scene::ContactMethod;
 use crate::rigid::{Bodies, InverseMass, Twist};
 use contact_cache::ContactCache;
 use contact_set::StepContext;
 use islands::Islands;
-use joint::Linked;
+use jacobi::Jacobi;
 use narrow_phase::NarrowPhase;
 use pieces::NONE;
+use solver::InTurn;
+use sweep::Order;
 use std::sync::Arc;
 
 /// The contacts and joints of all bodies: solver state that lasts from substep to substep.
 #[derive(Clone, serde::Serialize, serde::Deserialize)]
 pub struct Contacts {
     settings: ContactSettings,
-    #[serde(skip, default = "split")]
+    #[serde(skip, default = "in_turn")]
     solver: Arc<dyn ContactSolver>,
     narrow_phase: NarrowPhase,
     joints: Vec<Linked>,
@@ -75,6 +80,8 @@ pub struct Contacts {
     corrections: Vec<Twist>,
     wall_impulses: Vec<Vector64>,
     wall_forces: Vec<Vector64>,
+    /// Whether the next iteration goes through the contacts from the last to the first.
+    backward: bool,
     dt: f64,
     warm_factor: f64,
     gravity: f64,
@@ -104,8 +111,11 @@ impl Contacts {
     /// An empty set of contacts between bodies and these walls.
     pub fn new(walls: &[Wall], settings: ContactSettings) -> Contacts {
         Contacts {
+            solver: match settings.method {
+                ContactMethod::GaussSeidel => in_turn(),
+                ContactMethod::SplitJacobi => Arc::new(Split),
+            },
             settings,
-            solver: split(),
             narrow_phase: NarrowPhase::new(walls),
             joints: Vec::new(),
             islands: Islands::default(),
@@ -116,6 +126,7 @@ impl Contacts {
             corrections: Vec::new(),
             wall_impulses: vec![Vector64::ZERO; walls.len()],
             wall_forces: vec![Vector64::ZERO; walls.len()],
+            backward: false,
             dt: 0.0,
             warm_factor: 1.0,
             gravity: 0.0,
@@ -168,21 +179,28 @@ impl Contacts {
         self.narrow_phase.pass(dt);
     }
 
-    /// Splits the mass of each body among its contacts and applies the impulses kept from the last substep.
+    /// Applies the impulses kept from the last substep.
     pub fn warm_start(&mut self, bodies: &mut Bodies) {
-        self.split_masses(bodies);
-        self.jacobi.index(self.narrow_phase.contacts(), bodies.len());
-        let split = &self.split;
-        self.jacobi.sweep(self.narrow_phase.rows(), bodies.len(), |contact, _| {
-            contact.prepare(split);
-            contact.kept_push()
-        });
-        for linked in &mut self.joints {
-            let (a, b) = linked.bodies();
-            let pushes = linked.prepare(bodies, &self.split, self.dt, self.warm_factor);
-            add_pair(&mut self.jacobi.sums, (a, b), pushes);
+        self.solver.scale_masses(self.narrow_phase.contacts(), bodies, self.up, &mut self.scaled);
+        let at_once = self.solver.at_once();
+        if at_once {
+            self.split_masses(bodies);
+            self.jacobi.index(self.narrow_phase.contacts(), bodies.len());
         }
-        self.apply_displacements(bodies);
+        let masses = seen(&self.scaled, &bodies.inverse_masses);
+        let split = if at_once { &self.split[..] } else { masses };
+        for linked in &mut self.joints {
+            linked.prepare(&bodies.poses, &bodies.displacements, split, self.dt, self.warm_factor);
+        }
+        let order = if at_once { Order::AtOnce(&mut self.jacobi) } else { Order::InTurn };
+        let rows = self.narrow_phase.rows();
+        Sweep { order, rows, joints: &mut self.joints, masses, motion: &mut bodies.displacements }.run(
+            |contact, _, _| {
+                contact.prepare(split);
+                contact.kept_push()
+            },
+            |linked, _| linked.kept_pushes(),
+        );
     }
 
     /// N = max(1, n/relaxation) for the n contacts and joints that act on a body in this substep.
@@ -206,7 +224,6 @@ impl Contacts {
             count(b);
         }
         let relaxation = self.settings.relaxation;
-        self.solver.scale_masses(self.narrow_phase.contacts(), bodies, self.up, &mut self.scaled);
         self.split.clear();
         self.split.extend(seen(&self.scaled, &bodies.inverse_masses).iter().zip(&self.counts).map(
             |(response, &count)| {
@@ -216,31 +233,25 @@ impl Contacts {
         ));
     }
 
-    /// Jacobi iterations of all contacts and joints on the displacements; one iteration by default.
+    /// Iterations of all contacts and joints on the displacements; one iteration by default.
     pub fn iterate(&mut self, bodies: &mut Bodies) {
         for _ in 0..self.settings.iterations {
-            self.sweep(bodies);
+            let at_once = self.solver.at_once();
+            let backward = self.backward;
+            self.backward = !backward;
+            let order = match (at_once, backward) {
+                (true, _) => Order::AtOnce(&mut self.jacobi),
+                (false, false) => Order::InTurn,
+                (false, true) => Order::Backward,
+            };
+            let (rows, joints) = (self.narrow_phase.rows(), &mut self.joints[..]);
+            let masses = seen(&self.scaled, &bodies.inverse_masses);
+            self.solver.sweep(Sweep { order, rows, joints, masses, motion: &mut bodies.displacements });
         }
     }
 
-    fn sweep(&mut self, bodies: &mut Bodies) {
-        self.solver.sweep(&mut self.jacobi, self.narrow_phase.rows(), &bodies.displacements);
-        for linked in self.joints.iter_mut().filter(|linked| is_movable(linked, bodies)) {
-            let pushes = linked.solve(&bodies.displacements);
-            add_pair(&mut self.jacobi.sums, linked.bodies(), pushes);
-        }
-        self.apply_displacements(bodies);
-    }
-
-    fn apply_displacements(&mut self, bodies: &mut Bodies) {
-        self.jacobi.apply(seen(&self.scaled, &bodies.inverse_masses), &mut bodies.displacements);
-        let per_time = 1.0 / self.dt;
-        for (load, push) in bodies.contact_loads.iter_mut().zip(&self.jacobi.sums) {
-            *load += push.scaled(per_time);
-        }
-    }
-
-    /// Applies restitution to contacts with an impact speed above that of gravity in two substeps.
+    /// Applies restitution to contacts with an impact speed above that of gravity in two substeps, and adds the
+    /// impulses of the substep to the loads of bodies and walls.
     pub fn restitute(&mut self, bodies: &mut Bodies) {
         let (dt, slowest) = (self.dt, 2.0 * self.gravity * self.dt);
         let mut rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches());
@@ -250,31 +261,41 @@ impl Contacts {
                 contact.begin_rebound(cache, dt, slowest);
             }
             for _ in 0..self.settings.restitution_iterations {
-                let velocities = &bodies.velocities;
-                self.jacobi.sweep(self.narrow_phase.rows(), bodies.len(), |contact, cache| {
-                    if contact.rebounds(cache, slowest) {
-                        contact.rebound(cache, velocities, dt, slowest)
-                    } else {
-                        Default::default()
-                    }
-                });
-                self.jacobi.apply(seen(&self.scaled, &bodies.inverse_masses), &mut bodies.velocities);
-                for (load, push) in bodies.contact_loads.iter_mut().zip(&self.jacobi.sums) {
-                    *load += *push;
-                }
+                let order = if self.solver.at_once() { Order::AtOnce(&mut self.jacobi) } else { Order::InTurn };
+                let masses = seen(&self.scaled, &bodies.inverse_masses);
+                let (rows, joints) = (self.narrow_phase.rows(), &mut [][..]);
+                Sweep { order, rows, joints, masses, motion: &mut bodies.velocities }.contacts(
+                    |contact, cache, velocities| {
+                        if contact.rebounds(cache, slowest) {
+                            contact.rebound(cache, velocities, dt, slowest)
+                        } else {
+                            Push::default()
+                        }
+                    },
+                );
             }
         }
-        self.load_walls();
+        self.load(bodies);
     }
 
-    /// Adds the impulses of the substep to the walls they act on.
-    fn load_walls(&mut self) {
+    /// Adds the impulses of the substep to the bodies and walls they act on.
+    fn load(&mut self, bodies: &mut Bodies) {
         let rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches());
-        for (contact, cache) in rows.filter(|(_, cache)| cache.wall != NONE) {
-            for (point, rebound) in contact.points().iter().zip(cache.rebound) {
-                let normal = contact.normal * (point.normal_impulse / self.dt + rebound.normal);
-                let tangent = contact.normal.perp() * (point.tangent_impulse / self.dt + rebound.tangent);
-                self.wall_impulses[cache.wall as usize] -= normal + tangent;
+        for (contact, cache) in rows.filter(|(contact, _)| contact.is_pressed()) {
+            let push = contact.total_push(cache, self.dt);
+            bodies.contact_loads[contact.a as usize] += push.on_a();
+            if contact.b != NONE {
+                bodies.contact_loads[contact.b as usize] -= push.on_b();
+            }
+            if cache.wall != NONE {
+                self.wall_impulses[cache.wall as usize] -= push.linear;
+            }
+        }
+        for linked in &self.joints {
+            let ((a, b), (on_a, on_b)) = (linked.bodies(), linked.kept_pushes());
+            bodies.contact_loads[a as usize] += on_a.scaled(1.0 / self.dt);
+            if b != NONE {
+                bodies.contact_loads[b as usize] -= on_b.scaled(1.0 / self.dt);
             }
         }
     }
@@ -282,22 +303,24 @@ impl Contacts {
     /// Removes overlap from the positions, without changing any velocity.
     pub fn depenetrate(&mut self, bodies: &mut Bodies) {
         let (how, dt) = (&self.settings.depenetration, self.dt);
-        let (displacements, sizes) = (&bodies.displacements, &bodies.sizes);
-        self.jacobi.sweep(self.narrow_phase.rows(), bodies.len(), |contact, cache| {
-            let size = sizes[contact.a as usize];
-            let size = if contact.b == NONE { size } else { size.min(sizes[contact.b as usize]) };
-            contact.separate(cache, displacements, how, size, dt)
-        });
-        for linked in self.joints.iter_mut().filter(|linked| is_movable(linked, bodies)) {
-            let pushes = linked.separate(bodies);
-            add_pair(&mut self.jacobi.sums, linked.bodies(), pushes);
-        }
-        self.corrections.clear();
-        self.corrections.resize(bodies.len(), Twist::ZERO);
-        self.jacobi.apply(seen(&self.scaled, &bodies.inverse_masses), &mut self.corrections);
-        for (pose, moved) in bodies.poses.iter_mut().zip(&self.corrections) {
-            pose.position += moved.linear;
-            pose.angle += moved.angular;
+        let sizes = &bodies.sizes;
+        let at_once = self.solver.at_once();
+        self.corrections.clone_from(&bodies.displacements);
+        let order = if at_once { Order::AtOnce(&mut self.jacobi) } else { Order::InTurn };
+        let (rows, joints) = (self.narrow_phase.rows(), &mut self.joints[..]);
+        let masses = seen(&self.scaled, &bodies.inverse_masses);
+        let (poses, displacements) = (&bodies.poses, &bodies.displacements);
+        Sweep { order, rows, joints, masses, motion: &mut self.corrections }.run(
+            |contact, cache, motion| {
+                let size = sizes[contact.a as usize];
+                let size = if contact.b == NONE { size } else { size.min(sizes[contact.b as usize]) };
+                contact.separate(cache, motion, how, size, dt)
+            },
+            |linked, motion| linked.separate(poses, displacements, motion),
+        );
+        for ((pose, moved), before) in bodies.poses.iter_mut().zip(&self.corrections).zip(&bodies.displacements) {
+            pose.position += moved.linear - before.linear;
+            pose.angle += moved.angular - before.angular;
         }
     }
 
@@ -363,21 +386,8 @@ impl Contacts {
     }
 }
 
-fn split() -> Arc<dyn ContactSolver> {
-    Arc::new(Split)
-}
-
-fn is_movable(linked: &Linked, bodies: &Bodies) -> bool {
-    let (a, b) = linked.bodies();
-    let movable = |id: u32| entry(&bodies.inverse_masses, id) != InverseMass::default();
-    movable(a) || movable(b)
-}
-
-fn add_pair(sums: &mut [Twist], (a, b): (u32, u32), (on_a, on_b): (Twist, Twist)) {
-    sums[a as usize] += on_a;
-    if b != NONE {
-        sums[b as usize] -= on_b;
-    }
+fn in_turn() -> Arc<dyn ContactSolver> {
+    Arc::new(InTurn)
 }
 
 /// The inverse masses for contacts: the scaled ones, if there are any.

@@ -1,11 +1,13 @@
 //! Settings of the contact solver.
 
 use super::SleepSettings;
-use crate::scene::ContactDescription;
+use crate::scene::{ContactDescription, ContactMethod};
 
 /// Settings of the contact solver.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ContactSettings {
+    /// The order of contacts and joints in an iteration.
+    pub method: ContactMethod,
     /// Factor that reduces the mass splitting: over-relaxation of the split Jacobi sweep, below 2.
     /// With an odd number of iterations in a substep warm starting is stable only up to 4/3 (one) or 1.69 (three).
     pub relaxation: f64,
@@ -21,8 +23,9 @@ pub struct ContactSettings {
 
 impl Default for ContactSettings {
     fn default() -> Self {
-        let ContactDescription { relaxation, iterations } = ContactDescription::default();
+        let ContactDescription { method, relaxation, iterations } = ContactDescription::default();
         ContactSettings {
+            method,
             relaxation,
             iterations,
             depenetration: Depenetration::default(),
