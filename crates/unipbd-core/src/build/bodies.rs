@@ -4,7 +4,7 @@ use super::carve::Solid;
 use crate::legacy;
 use crate::math::Vector64;
 use crate::rigid::Wall;
-use crate::rigid::contact::{ContactSettings, Contacts, DistanceRule, Joint, JointKind, Motor};
+use crate::rigid::contact::{ContactSettings, Contacts, DistanceRule, Joint, JointKind, Motor, SleepSettings};
 use crate::rigid::{
     Bodies, BodySpec, CollisionFilter, Elasticity, MassSpec, Motion, Pose, Repeat, Rotation, Surface, Twist, Waypoint,
 };
@@ -26,20 +26,21 @@ pub(super) fn build(scene: &Scene) -> (Bodies, Contacts) {
             let _ = bodies.add(spec);
         }
     }
-    let ContactDescription { method, relaxation, iterations } = scene.contacts;
-    let settings = ContactSettings { method, relaxation, iterations, ..ContactSettings::default() };
+    let ContactDescription { method, relaxation, iterations, sleep, sleep_speed, sleep_delay } = scene.contacts;
+    let sleep = sleep.then_some(SleepSettings { speed: sleep_speed, delay: sleep_delay });
+    let settings = ContactSettings { method, relaxation, iterations, sleep, ..ContactSettings::default() };
     let mut contacts = match scene.legacy.changes_contacts() {
         false => Contacts::new(&walls(scene), settings),
         true => legacy::contacts(&walls(scene), settings, &scene.legacy),
     };
     for description in &scene.joint {
         if let Some(joint) = joint(description, &bodies) {
-            contacts.add_joint(joint);
+            contacts.add_joint(joint, description.collide_connected());
         }
     }
     for rope in &scene.rope {
         if let Some(joint) = rope_joint(rope, scene.spacing, &bodies) {
-            contacts.add_joint(joint);
+            contacts.add_joint(joint, true);
         }
     }
     (bodies, contacts)

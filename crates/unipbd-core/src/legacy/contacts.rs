@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::mass_scaling;
 use crate::math::Vector64;
-use crate::rigid::contact::{Contact, ContactSettings, ContactSolver, Contacts, Linked, Push, Split, Sweep};
+use crate::rigid::contact::{Contact, ContactSettings, ContactSolver, Contacts, Linked, Push, Split, Sweep, entry};
 use crate::rigid::{Bodies, InverseMass, Surface, Twist, Wall};
 use crate::scene::LegacySettings;
 
@@ -51,7 +51,7 @@ impl ContactSolver for LegacyContacts {
 /// that friction holds back for this depth.
 fn project(contact: &mut Contact, surface: &Surface, displacements: &[Twist]) -> Push {
     let mut push = Push::default();
-    let Some(pressed) = contact.press(displacements, [0.0; 2]) else { return push };
+    let Some(pressed) = contact.press((entry(displacements, contact.a), entry(displacements, contact.b)), [0.0; 2]) else { return push };
     for k in 0..contact.points().len() {
         let normal = pressed.normal[k];
         let held = surface.held_back(contact.stop(k, &pressed), normal);

@@ -216,6 +216,9 @@ pub struct JointDescription {
     /// Largest torque of the motor [N m].
     #[serde(default = "boundless")]
     pub motor_torque: f64,
+    /// Whether the two bodies collide with each other; left out, those at a rope do, and others do not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub collide_connected: Option<bool>,
 }
 
 impl JointDescription {
@@ -231,7 +234,13 @@ impl JointDescription {
             compliance: 0.0,
             motor_speed_deg: None,
             motor_torque: boundless(),
+            collide_connected: None,
         }
+    }
+
+    /// Whether the two bodies collide with each other.
+    pub fn collide_connected(&self) -> bool {
+        self.collide_connected.unwrap_or(self.kind == JointRule::Rope)
     }
 }
 

@@ -44,7 +44,7 @@ pub use sources::*;
 pub use walls::*;
 pub use waves::*;
 
-pub(crate) use contacts::OVER_RELAXATION;
+pub(crate) use contacts::{OVER_RELAXATION, SLEEP_DELAY, SLEEP_SPEED};
 pub(crate) use layout::{block_points, disc_points};
 pub(crate) use substep_law::{COURANT, SubstepLaw};
 pub(crate) use validate::FARTHEST;

@@ -11,6 +11,9 @@ use crate::math::Vector64;
 /// Distance, relative to an edge, below which two separations count as equal.
 const EQUAL: f64 = 1e-4;
 
+/// Depth of another face, relative to an edge, at which it is not tried in place of a covered one.
+const DEEP: f64 = 0.25;
+
 /// Contacts of a piece with a half-plane.
 pub(super) fn against_half_plane(a: &PieceView, plane: &HalfPlane, margin: f64, out: &mut Vec<Touch>) {
     for (k, &p) in a.vertices.iter().enumerate().filter(|&(k, _)| a.corners[k]) {
@@ -104,14 +107,19 @@ fn polygons(a: &PieceView, b: &PieceView, margin: f64, out: &mut Vec<Touch>) {
     if axis.apart == f64::NEG_INFINITY || over_face(a, b, axis, ends, margin, out) || !(a.joined || b.joined) {
         return;
     }
-    // The face of largest separation is covered where the other polygon is: the next ones follow.
+    // The face of largest separation is covered where the other polygon is: the next ones follow, unless the polygons
+    // are apart, or the next face is so deep inside that the other polygon cannot have come in through it.
+    let deepest = axis.apart - DEEP * edge(a).min(edge(b));
+    if ends == Ends::Corners {
+        return;
+    }
     let mut last = axis;
     for _ in 0..a.vertices.len() + b.vertices.len() {
         let (Some(of_b), Some(of_a)) = (widest(a, b, margin, Some(last)), widest(b, a, margin, Some(last))) else {
             return;
         };
         last = if of_a.apart > of_b.apart { Axis { of_first: true, ..of_a } } else { of_b };
-        if last.apart == f64::NEG_INFINITY || over_face(a, b, last, Ends::None, margin, out) {
+        if last.apart < deepest || over_face(a, b, last, Ends::None, margin, out) {
             return;
         }
     }

@@ -222,6 +222,11 @@ impl Linked {
 }
 
 impl Linked {
+    /// Whether a motor wants it to turn.
+    pub fn is_driven(&self) -> bool {
+        matches!(self.joint.kind, JointKind::Hinge { motor: Some(motor) } if motor.speed != 0.0 && motor.max_torque > 0.0)
+    }
+
     /// The impulse on the first body as a vector [kg m].
     pub fn force(&self) -> Vector64 {
         match self.joint.kind {

@@ -23,9 +23,14 @@ pub(super) struct EffectiveMass {
     pub tangent: [f64; 2],
     /// Responses of both bodies to moments [1/(kg m^2)].
     pub turning: (f64, f64),
+    /// Sum of the inverse masses [1/kg].
+    pub linear: f64,
     /// Coulomb coefficient: static if the sliding speed is low, else kinetic.
     pub friction: f64,
 }
+
+/// Rounds of normal and friction impulses of a new contact.
+const ROUNDS: usize = 8;
 
 /// One or two points of two bodies with a common normal.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
@@ -196,7 +201,7 @@ impl Contact {
             (normal.second, normal.off, tangent[1]) = (along_normal(q, q), along_normal(p, q), along_tangent(q));
         }
         self.effective_mass =
-            EffectiveMass { normal, tangent, turning: (a.angular, b.angular), friction: self.effective_mass.friction };
+            EffectiveMass { normal, tangent, turning: (a.angular, b.angular), linear, ..self.effective_mass };
     }
 
     /// The push of the impulses kept from the last substep.
@@ -236,8 +241,24 @@ impl Contact {
 
     /// One iteration: no approach beyond the gap, friction inside Coulomb's cone, rolling resistance.
     pub fn solve(&mut self, displacements: &[Twist]) -> Push {
+        let mut motion = (entry(displacements, self.a), entry(displacements, self.b));
+        // Friction of a tall body turns it: a contact without impulses to start from needs a few rounds for both.
+        let is_new = self.count == 2 && !self.is_pressed() && self.effective_mass.friction > 0.0;
+        let mut push = Push::default();
+        for _ in 0..if is_new { ROUNDS } else { 1 } {
+            let step = self.solve_once(motion);
+            push += step;
+            let (turns_a, turns_b) = self.effective_mass.turning;
+            motion.0.linear += step.linear * self.effective_mass.linear;
+            motion.0.angular += step.angular_a * turns_a;
+            motion.1.angular -= step.angular_b * turns_b;
+        }
+        push
+    }
+
+    fn solve_once(&mut self, motion: (Twist, Twist)) -> Push {
         let old = self.points.map(|point| point.normal_impulse);
-        let Some(pressed) = self.press(displacements, old) else { return Push::default() };
+        let Some(pressed) = self.press(motion, old) else { return Push::default() };
         let mut push = Push::default();
         for (k, old) in old.into_iter().enumerate().take(self.count as usize) {
             let (point, normal) = (self.points[k], pressed.normal[k]);
@@ -252,8 +273,7 @@ impl Contact {
 
     /// The normal impulses that leave no approach beyond the gap, in place of the `old` ones; `None` if
     /// there were none and none are needed.
-    pub fn press(&self, displacements: &[Twist], old: [f64; 2]) -> Option<Pressed> {
-        let (a, b) = (entry(displacements, self.a), entry(displacements, self.b));
+    pub fn press(&self, (a, b): (Twist, Twist), old: [f64; 2]) -> Option<Pressed> {
         let mut excess = [0.0; 2];
         for (excess, point) in excess.iter_mut().zip(self.points()) {
             *excess = self.opening(point, &a, &b) + point.gap.max(0.0);

@@ -144,10 +144,10 @@ impl Contacts {
         self.solver = other.solver.clone();
     }
 
-    /// Adds a joint; the bodies it links no longer collide with each other. Returns its index.
-    pub fn add_joint(&mut self, joint: Joint) -> usize {
+    /// Adds a joint and returns its index. Without `collide`, the bodies it links no longer collide with each other.
+    pub fn add_joint(&mut self, joint: Joint, collide: bool) -> usize {
         self.joints.push(Linked::new(joint));
-        if let Some(other) = joint.other {
+        if let Some(other) = joint.other.filter(|_| !collide) {
             self.narrow_phase.exclude(joint.body, other);
         }
         self.joints.len() - 1
@@ -333,7 +333,7 @@ impl Contacts {
         self.narrow_phase.begin_frame(frame_time);
         if let Some(settings) = &self.settings.sleep {
             let fell_asleep =
-                self.islands.sleep(bodies, self.narrow_phase.contacts(), &self.joints, settings, frame_time);
+                self.islands.sleep(bodies, self.narrow_phase.contacts(), &self.joints, settings, (frame_time, self.gravity));
             if fell_asleep {
                 self.narrow_phase.freeze(bodies, self.dt);
             }
@@ -341,7 +341,7 @@ impl Contacts {
     }
 
     /// Wakes a body with its island.
-    pub(crate) fn wake(&mut self, bodies: &mut Bodies, body: u32) {
+    pub fn wake(&mut self, bodies: &mut Bodies, body: u32) {
         self.islands.resize(bodies.len());
         self.islands.wake_island(bodies, body as usize);
     }
@@ -353,6 +353,18 @@ impl Contacts {
             self.islands.put_to_sleep(bodies, falling_asleep, self.narrow_phase.contacts(), &self.joints);
             self.narrow_phase.freeze(bodies, self.dt);
         }
+    }
+
+    /// Pairs of bodies that act on each other through contacts or joints.
+    pub(crate) fn linked(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
+        let pressed = self.narrow_phase.contacts().iter().filter(|contact| contact.is_pressed());
+        let pairs = pressed.map(|contact| (contact.a, contact.b)).chain(self.joints.iter().map(Linked::bodies));
+        pairs.filter(|&(_, b)| b != NONE)
+    }
+
+    /// Whether no substep has been taken.
+    pub(crate) fn is_fresh(&self) -> bool {
+        self.dt == 0.0
     }
 
     /// Force of the bodies on each wall over the last frame, mean [N]; in the order of the walls.

@@ -23,7 +23,7 @@ pub struct ContactSettings {
 
 impl Default for ContactSettings {
     fn default() -> Self {
-        let ContactDescription { method, relaxation, iterations } = ContactDescription::default();
+        let ContactDescription { method, relaxation, iterations, .. } = ContactDescription::default();
         ContactSettings {
             method,
             relaxation,
