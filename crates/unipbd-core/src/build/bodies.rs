@@ -81,6 +81,7 @@ fn specification(description: &BodyDescription, name: String, position: Vector64
             kinetic_friction: description.kinetic_friction.unwrap_or(description.friction),
             rolling_friction: description.rolling_friction,
             restitution: description.restitution,
+            speed: description.surface_speed,
         },
         filter: CollisionFilter {
             layers: layers(&description.layers),
@@ -172,7 +173,11 @@ fn rope_joint(rope: &Rope, spacing: f64, bodies: &Bodies) -> Option<Joint> {
 fn walls(scene: &Scene) -> Vec<Wall> {
     let mut walls = Vec::new();
     for wall in &scene.half_plane {
-        walls.push(Wall::half_plane(wall.point.into(), wall.normal.into(), Surface::with_friction(wall.friction)));
+        let (normal, velocity) = (Vector64::from(wall.normal), Vector64::from(wall.velocity));
+        // A solid lies to the left of its outline.
+        let speed = velocity.dot(normal.normalize().perp());
+        let surface = Surface { speed, ..Surface::with_friction(wall.friction) };
+        walls.push(Wall::half_plane(wall.point.into(), normal, surface));
     }
     for tank in &scene.tank {
         let sides = [Side::Left, Side::Right, Side::Bottom, Side::Top];

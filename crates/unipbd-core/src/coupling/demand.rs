@@ -12,12 +12,14 @@ const TURN: f64 = 0.25;
 /// 100 kg dropped on one of 1 kg and 0.5 m overlaps it by 26 % of that size at 1 substep, 7 % at 2, 0.4 % at 8:
 /// with this factor by less than half a percent.
 const CONVERGENCE: f64 = 125.0;
+/// Substeps of a polygon that touches something: a box on a slope stands up to 99 % of its limit at 2, 98 % at 1.
+const LEAST: f64 = 2.0;
 /// Height of a stack of bodies that one substep per frame can carry.
 const BODIES_PER_SUBSTEP: f64 = 4.0;
 
 /// Substeps per frame wanted by bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct BodyDemand {
+pub struct BodyDemand {
     /// By speed and spin.
     pub motion: f64,
     /// By the height of stacks and the mass ratio of bodies that act on each other.
@@ -28,7 +30,17 @@ impl RigidBodies {
     /// Substeps that a frame of this length [s] needs.
     pub(crate) fn demand(&self, frame: f64, gravity: Vector64) -> BodyDemand {
         let stacked = self.support_chain(gravity) / BODIES_PER_SUBSTEP;
-        BodyDemand { motion: self.motion(frame), support: stacked.max(self.convergence(frame, gravity.length())) }
+        BodyDemand { motion: self.motion(frame), support: stacked.max(self.convergence(frame, gravity.length())).max(self.least()) }
+    }
+
+    fn least(&self) -> f64 {
+        let bodies = &self.bodies;
+        let polygon = |id: u32| bodies.is_dynamic(id as usize) && !bodies.asleep[id as usize] && bodies.cores[id as usize].radius == 0.0;
+        let touches = match self.contacts.is_fresh() {
+            true => (0..bodies.len() as u32).any(polygon),
+            false => self.contacts.pressed().any(|(a, _)| polygon(a)),
+        };
+        if touches { LEAST } else { 0.0 }
     }
 
     fn motion(&self, frame: f64) -> f64 {

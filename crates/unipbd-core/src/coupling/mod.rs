@@ -10,7 +10,6 @@ use crate::particles::Particles;
 use crate::rigid::contact::Contacts;
 use crate::rigid::{Bodies, Body};
 use crate::rows::RowIndex;
-pub(crate) use demand::BodyDemand;
 use push_out::Penetration;
 
 /// A little more than half the diagonal of a lattice cell [spacings].

@@ -60,7 +60,8 @@ pub struct BodyDescription {
     /// Mass, instead of the density [kg].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass: Option<f64>,
-    /// Coulomb friction coefficient.
+    /// Coulomb friction coefficient, 0.5 by default; walls have 0. Two surfaces have the root of the product of theirs,
+    /// the larger restitution, the larger rolling friction.
     #[serde(default = "half")]
     pub friction: f64,
     /// Friction coefficient while sliding; left out, the same.
@@ -72,6 +73,9 @@ pub struct BodyDescription {
     /// Rebound speed over impact speed, 0 to 1.
     #[serde(default)]
     pub restitution: f64,
+    /// Speed of the surface along the outline, counter-clockwise: a conveyor belt, for other bodies [m/s].
+    #[serde(default)]
+    pub surface_speed: f64,
     /// Collision layers the body is in, 0 to 31.
     #[serde(default = "first_layer")]
     pub layers: Vec<u8>,

@@ -162,8 +162,10 @@ fn a_box_on_a_slope_tips_where_its_diagonal_says() {
                 scene.spacing = spacing;
                 run(&scene, 5.0).bodies()[0].angle.abs() > 0.1
             };
-            let (stands, falls) = (!tips(0.99), tips(1.01));
-            println!("{substeps:?}: {size:?} m at spacing {spacing} m: stands at 0.99 b/h {stands}, falls at 1.01 {falls}");
+            // One substep leaves more motion at the start.
+            let near = if substeps == Substeps::Fixed(1) { 0.03 } else { 0.01 };
+            let (stands, falls) = (!tips(1.0 - near), tips(1.0 + near));
+            println!("{substeps:?}: {size:?} m, spacing {spacing} m: stands below {stands}, falls above b/h {falls}");
             assert!(stands && falls);
         }
     }
@@ -228,7 +230,7 @@ fn fast_and_spinning_bodies_get_substeps() {
         println!("{velocity:?} m/s, {spin_deg} deg/s: {substeps} substeps");
         substeps
     };
-    assert_eq!(first([0.0, 0.0], 0.0), 1);
+    assert_eq!(first([0.0, 0.0], 0.0), 2);
     assert!(first([300.0, 0.0], 0.0) >= 40 && first([0.0, 0.0], 5730.0) >= 6);
 }
 
@@ -303,4 +305,34 @@ fn bodies_tied_by_a_slack_rope_collide() {
         println!("{substeps:?}: rests at {tied:.4} m, without collision at {through:.4} m");
         assert!((tied - 0.6).abs() < 0.01 && (through - 0.2).abs() < 0.01);
     }
+}
+
+#[test]
+fn a_conveyor_carries_a_body_at_its_speed() {
+    for substeps in ALL {
+        let mut on_plane = scene(substeps, vec![rectangle([0.4, 0.4], [0.0, 0.2])], Some(0.5));
+        on_plane.half_plane[0].velocity = [1.5, 0.0];
+        let carried = run(&on_plane, 3.0).bodies()[0].velocity.x;
+        let kind = unipbd_core::scene::BodyKind::Static;
+        let belt = BodyDescription { kind, surface_speed: -1.5, ..rectangle([20.0, 0.4], [0.0, -0.2]) };
+        let on_body = scene(substeps, vec![rectangle([0.4, 0.4], [0.0, 0.2]), belt], None);
+        let by_body = run(&on_body, 3.0).bodies()[0].velocity.x;
+        println!("{substeps:?}: carried at {carried:.4} and {by_body:.4} of 1.5 m/s");
+        assert!((carried - 1.5).abs() < 1e-3 && (by_body - 1.5).abs() < 1e-3);
+    }
+}
+
+#[test]
+fn sleeping_bodies_load_their_support() {
+    let kind = unipbd_core::scene::BodyKind::Static;
+    let table = BodyDescription { kind, ..rectangle([2.0, 0.2], [0.0, -0.1]) };
+    let scene = scene(Substeps::Auto, vec![rectangle([0.4, 0.4], [0.0, 0.2]), table], None);
+    let mut solver = build(&scene);
+    for seconds in [0.3, 2.0] {
+        step(&mut solver, seconds);
+        let (asleep, load) = (solver.bodies()[0].asleep, solver.bodies()[1].contact_force);
+        println!("asleep {asleep}: the table carries {:.3} N", -load.y);
+        assert!((load.y + 160.0 * 9.81).abs() < 1.0);
+    }
+    assert!(solver.bodies()[0].asleep);
 }

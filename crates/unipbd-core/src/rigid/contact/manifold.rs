@@ -27,6 +27,8 @@ pub(super) struct EffectiveMass {
     pub linear: f64,
     /// Coulomb coefficient: static if the sliding speed is low, else kinetic.
     pub friction: f64,
+    /// Way of moving surfaces in the substep, along the tangent [m].
+    pub belt: f64,
 }
 
 /// Rounds of normal and friction impulses of a new contact.
@@ -176,14 +178,15 @@ impl Contact {
     }
 
     /// Stores the velocities at the start of a substep. A contact that slides slower than `slow` [m/s] sticks.
-    pub fn note_velocities(&mut self, cache: &mut ContactCache, velocities: &[Twist], slow: f64) {
+    pub fn note_velocities(&mut self, cache: &mut ContactCache, velocities: &[Twist], slow: f64, dt: f64) {
         let (a, b) = (entry(velocities, self.a), entry(velocities, self.b));
         let mut sliding = 0.0f64;
         for (k, point) in self.points().iter().enumerate() {
             cache.approach[k] = self.opening(point, &a, &b);
-            sliding = sliding.max(self.slide(point, &a, &b).abs());
+            sliding = sliding.max((self.slide(point, &a, &b) - cache.surface.speed).abs());
         }
         let surface = &cache.surface;
+        self.effective_mass.belt = surface.speed * dt;
         self.effective_mass.friction = if sliding < slow { surface.static_friction } else { surface.kinetic_friction };
     }
 
@@ -298,7 +301,7 @@ impl Contact {
         let turned = point.tangent_a * pressed.turned.0 + point.tangent_b * pressed.turned.1;
         // Both points have the same tangential motion: each takes the share of its normal load.
         let share = pressed.normal[k] / total;
-        (self.slide(point, &pressed.a, &pressed.b) + turned) * share / self.effective_mass.tangent[k]
+        (self.slide(point, &pressed.a, &pressed.b) - self.effective_mass.belt + turned) * share / self.effective_mass.tangent[k]
     }
 
     /// Rolling resistance, after the other impulses of the contact have rotated the bodies.

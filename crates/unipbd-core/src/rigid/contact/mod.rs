@@ -327,6 +327,18 @@ impl Contacts {
     /// Ends a frame of length `frame_time` [s]: mean forces on walls, and sleep. Call it before
     /// [`Bodies::finish_frame`].
     pub fn finish_frame(&mut self, bodies: &mut Bodies, frame_time: f64) {
+        // Sleeping bodies load their supports as they did when they fell asleep.
+        for (contact, cache) in self.narrow_phase.frozen() {
+            let push = contact.total_push(cache, 1.0);
+            if cache.wall != NONE {
+                self.wall_impulses[cache.wall as usize] -= push.linear * frame_time;
+            }
+            for (body, load) in [(contact.a, push.on_a()), (contact.b, push.on_b().scaled(-1.0))] {
+                if body != NONE && !bodies.is_dynamic(body as usize) {
+                    bodies.contact_loads[body as usize] += load.scaled(frame_time);
+                }
+            }
+        }
         for (force, impulse) in self.wall_forces.iter_mut().zip(&mut self.wall_impulses) {
             *force = std::mem::take(impulse) / frame_time;
         }
@@ -357,9 +369,12 @@ impl Contacts {
 
     /// Pairs of bodies that act on each other through contacts or joints.
     pub(crate) fn linked(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
-        let pressed = self.narrow_phase.contacts().iter().filter(|contact| contact.is_pressed());
-        let pairs = pressed.map(|contact| (contact.a, contact.b)).chain(self.joints.iter().map(Linked::bodies));
-        pairs.filter(|&(_, b)| b != NONE)
+        self.pressed().chain(self.joints.iter().map(Linked::bodies)).filter(|&(_, b)| b != NONE)
+    }
+
+    /// The bodies of the contacts that carry a load.
+    pub(crate) fn pressed(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
+        self.narrow_phase.contacts().iter().filter(|contact| contact.is_pressed()).map(|contact| (contact.a, contact.b))
     }
 
     /// Whether no substep has been taken.

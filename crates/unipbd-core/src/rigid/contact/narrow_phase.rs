@@ -88,7 +88,7 @@ impl NarrowPhase {
             let of = [frames.of(contact.a), frames.of(contact.b)];
             contact.measure(cache, of);
             cache.pull = (of[0].pull - of[1].pull).dot(contact.normal);
-            contact.note_velocities(cache, &bodies.velocities, moment.slow);
+            contact.note_velocities(cache, &bodies.velocities, moment.slow, moment.dt);
         });
         self.frames = frames;
     }
@@ -111,6 +111,12 @@ impl NarrowPhase {
             }
             span.count += 1;
         }
+    }
+
+    /// The contacts of sleeping pairs: they store forces in place of impulses.
+    pub fn frozen(&self) -> impl Iterator<Item = (&Contact, &ContactCache)> {
+        let spans = self.pairs.spans.iter().filter(|span| span.frozen).map(Span::range);
+        spans.flatten().map(|row| (&self.frozen.contacts[row], &self.frozen.caches[row]))
     }
 
     /// Stores the contacts of sleeping pairs, with forces in place of impulses.
