@@ -30,12 +30,17 @@ impl RigidBodies {
     /// Substeps that a frame of this length [s] needs.
     pub(crate) fn demand(&self, frame: f64, gravity: Vector64) -> BodyDemand {
         let stacked = self.support_chain(gravity) / BODIES_PER_SUBSTEP;
-        BodyDemand { motion: self.motion(frame), support: stacked.max(self.convergence(frame, gravity.length())).max(self.least()) }
+        BodyDemand {
+            motion: self.motion(frame),
+            support: stacked.max(self.convergence(frame, gravity.length())).max(self.least()),
+        }
     }
 
     fn least(&self) -> f64 {
         let bodies = &self.bodies;
-        let polygon = |id: u32| bodies.is_dynamic(id as usize) && !bodies.asleep[id as usize] && bodies.cores[id as usize].radius == 0.0;
+        let polygon = |id: u32| {
+            bodies.is_dynamic(id as usize) && !bodies.asleep[id as usize] && bodies.cores[id as usize].radius == 0.0
+        };
         let touches = match self.contacts.is_fresh() {
             true => (0..bodies.len() as u32).any(polygon),
             false => self.contacts.pressed().any(|(a, _)| polygon(a)),

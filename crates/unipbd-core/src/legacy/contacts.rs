@@ -51,7 +51,10 @@ impl ContactSolver for LegacyContacts {
 /// that friction holds back for this depth.
 fn project(contact: &mut Contact, surface: &Surface, displacements: &[Twist]) -> Push {
     let mut push = Push::default();
-    let Some(pressed) = contact.press((entry(displacements, contact.a), entry(displacements, contact.b)), [0.0; 2]) else { return push };
+    let Some(pressed) = contact.press((entry(displacements, contact.a), entry(displacements, contact.b)), [0.0; 2])
+    else {
+        return push;
+    };
     for k in 0..contact.points().len() {
         let normal = pressed.normal[k];
         let held = surface.held_back(contact.stop(k, &pressed), normal);

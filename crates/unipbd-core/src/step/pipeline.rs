@@ -14,7 +14,8 @@ pub enum Stage {
     PressureGrid,
     /// Adds the forces of the grid's pressure on the measured walls.
     GridWallForces,
-    /// Predicts the bodies, finds their contacts and solves contacts and joints once.
+    /// Searches the contacts of bodies, once per frame if they move as predicted, predicts the bodies, and solves
+    /// contacts and joints once.
     Contacts,
     /// Wakes the liquid around bodies that were woken.
     WakeAroundBodies,

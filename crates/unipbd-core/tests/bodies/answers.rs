@@ -55,7 +55,9 @@ fn energy(bodies: &[Body], gravity: f64) -> f64 {
 #[test]
 fn an_oblique_bounce_has_the_friction_of_its_rebound() {
     for substeps in ALL {
-        for (friction, restitution, start) in [(0.2, 0.8, 0.5035), (0.2, 0.8, 0.55), (0.1, 0.5, 0.507), (0.2, 0.0, 0.51)] {
+        for (friction, restitution, start) in
+            [(0.2, 0.8, 0.5035), (0.2, 0.8, 0.55), (0.1, 0.5, 0.507), (0.2, 0.0, 0.51)]
+        {
             let ball = BodyDescription { friction, restitution, velocity: [5.0, -4.0], ..disc(0.2, [0.0, start]) };
             let mut scene = scene(substeps, vec![ball], Some(friction));
             scene.gravity = [0.0, 0.0];
@@ -275,9 +277,7 @@ fn bodies_at_rest_sleep_if_they_may() {
 fn dropped_boxes_come_to_rest() {
     for substeps in [Substeps::Auto, Substeps::Fixed(2), Substeps::Fixed(4), Substeps::Fixed(16)] {
         for angle_deg in [15.0, 5.0] {
-            let body = |k: i32| {
-                BodyDescription { angle_deg, ..rectangle([0.3, 0.2], [0.0, 0.5 + 0.5 * f64::from(k)]) }
-            };
+            let body = |k: i32| BodyDescription { angle_deg, ..rectangle([0.3, 0.2], [0.0, 0.5 + 0.5 * f64::from(k)]) };
             let solver = run(&scene(substeps, (0..4).map(body).collect(), Some(0.5)), 20.0);
             let fastest = solver.bodies().iter().map(|body| body.velocity.length()).fold(0.0, f64::max);
             println!("{substeps:?}: 4 boxes dropped at {angle_deg} degrees move at {fastest:.1e} m/s after 20 s");
@@ -292,12 +292,7 @@ fn bodies_tied_by_a_slack_rope_collide() {
         let body = |name: &str, y: f64| BodyDescription { name: name.into(), ..rectangle([0.4, 0.4], [0.0, y]) };
         let mut scene = scene(substeps, vec![body("a", 0.2), body("b", 1.0)], Some(0.5));
         let rope = JointDescription::new(JointRule::Rope, "a", [0.2, 0.2]);
-        let rope = JointDescription {
-            other: Some("b".into()),
-            other_at: Some([0.2, 1.0]),
-            length: Some(2.0),
-            ..rope
-        };
+        let rope = JointDescription { other: Some("b".into()), other_at: Some([0.2, 1.0]), length: Some(2.0), ..rope };
         scene.joint = vec![rope.clone()];
         let tied = run(&scene, 3.0).bodies()[1].position.y;
         scene.joint = vec![JointDescription { collide_connected: Some(false), ..rope }];

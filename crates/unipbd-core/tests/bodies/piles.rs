@@ -1,6 +1,6 @@
 use super::world::{GRAVITY, World, at, body, floor, mirrored, never_asleep, unit_box};
-use unipbd_core::rigid::contact::ContactSettings;
 use unipbd_core::rigid::Wall;
+use unipbd_core::rigid::contact::ContactSettings;
 use unipbd_core::rigid::{BodySpec, MassSpec, Surface};
 use unipbd_core::shapes::Shape;
 
@@ -72,7 +72,9 @@ fn pyramid_of_210_boxes_stands() {
         world.run(7.0);
         let speed = world.fastest_in(1.0);
         let (overlap, mirror) = (world.penetration(), mirror_error(&world, 20));
-        println!("pyramid of 210, {name}, 8 s: speed {speed:.1e} m/s, overlap {overlap:.1e} m, mirror error {mirror:.1e} m");
+        println!(
+            "pyramid of 210, {name}, 8 s: speed {speed:.1e} m/s, overlap {overlap:.1e} m, mirror error {mirror:.1e} m"
+        );
         assert!(overlap <= 1e-3 && mirror <= most && speed <= 1e-5);
     }
 }

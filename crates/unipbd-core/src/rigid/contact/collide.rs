@@ -4,7 +4,8 @@
 //! ends. Edges that are no surface (cuts through a concave solid, faces that a flush neighbour covers) give no
 //! contact: beyond them the neighbouring piece does.
 
-use super::pieces::{HIDDEN, HalfPlane, PieceView, Pieces};
+use super::bounds::HIDDEN;
+use super::pieces::{HalfPlane, PieceView, Pieces};
 use super::touch::{Reference, Touch, feature};
 use crate::math::Vector64;
 
@@ -156,7 +157,8 @@ fn over_face(a: &PieceView, b: &PieceView, axis: Axis, ends: Ends, margin: f64, 
 /// Clips the edge of `a` that is most opposite to a face of `b`.
 fn clip(a: &PieceView, b: &PieceView, face: usize, ends: Ends, margin: f64, mut push: impl FnMut(Touch)) {
     let (from, normal, end) = (b.vertices[face], b.normals[face], (face + 1) % b.vertices.len());
-    let opposite = |best: usize, k: usize| if a.normals[k].dot(normal) < a.normals[best].dot(normal) { k } else { best };
+    let opposite =
+        |best: usize, k: usize| if a.normals[k].dot(normal) < a.normals[best].dot(normal) { k } else { best };
     let edge = (0..a.normals.len()).fold(0, opposite);
     let next = (edge + 1) % a.vertices.len();
     let along = |p: Vector64| (p - from).dot(normal.perp());

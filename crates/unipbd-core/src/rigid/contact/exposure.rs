@@ -1,6 +1,6 @@
 //! The surface of solids that lie flush against each other: the parts of their outlines that no other covers.
 
-use super::pieces::{Bounds, HIDDEN};
+use super::bounds::{Bounds, HIDDEN};
 use crate::math::Vector64;
 
 /// Distance from an edge at which another solid counts as lying on it, relative to the size of the solid.
@@ -28,7 +28,8 @@ pub(super) fn covered(solids: &[Solid], planes: &[(Vector64, Vector64)]) -> Vec<
             if solids[j].bounds.low.x > reach.high.x + TOUCHING * solids[j].size {
                 break;
             }
-            if solids[i].owner != solids[j].owner && reach.overlaps(&solids[j].bounds.grown(TOUCHING * solids[j].size)) {
+            if solids[i].owner != solids[j].owner && reach.overlaps(&solids[j].bounds.grown(TOUCHING * solids[j].size))
+            {
                 by_solid(&solids[i], &solids[j], &mut found[i]);
                 by_solid(&solids[j], &solids[i], &mut found[j]);
             }
@@ -54,11 +55,7 @@ fn by_solid(solid: &Solid, other: &Solid, found: &mut Vec<(usize, [f64; 2])>) {
 }
 
 /// The part of an edge whose outer side lies within these sides: the segment just outside the edge, clipped.
-fn inside(
-    solid: &Solid,
-    edge: usize,
-    sides: impl Iterator<Item = (Vector64, Vector64)>,
-) -> Option<(usize, [f64; 2])> {
+fn inside(solid: &Solid, edge: usize, sides: impl Iterator<Item = (Vector64, Vector64)>) -> Option<(usize, [f64; 2])> {
     let from = solid.vertices[edge];
     let way = solid.vertices[(edge + 1) % solid.vertices.len()] - from;
     let (length, room) = (way.length(), TOUCHING * solid.size);

@@ -1,6 +1,6 @@
 //! Poses of bodies at the start of a substep, with their rotations evaluated.
 
-use super::pieces::NONE;
+use super::bounds::NONE;
 use crate::math::Vector64;
 use crate::rigid::Bodies;
 

@@ -1,9 +1,9 @@
 //! Sleep by islands: connected bodies fall asleep together, once all of them have been slow for a
 //! while, and wake together. Impulses are kept, so that a woken pile keeps its state.
 
+use super::bounds::NONE;
 use super::joint::Linked;
 use super::manifold::Contact;
-use super::pieces::NONE;
 use super::union_find::UnionFind;
 use crate::rigid::{Bodies, Twist};
 use crate::scene::{SLEEP_DELAY, SLEEP_SPEED};

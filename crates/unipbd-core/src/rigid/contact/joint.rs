@@ -5,8 +5,8 @@
 //! schemes (SHAKE, Ryckaert et al. 1977), this conserves the energy of a rotating body on a hinge. The remaining drift
 //! is removed from the positions alone. A distance with compliance is a spring, solved as in Macklin et al. 2016.
 
+use super::bounds::NONE;
 use super::manifold::entry;
-use super::pieces::NONE;
 use crate::math::Vector64;
 use crate::rigid::{InverseMass, Pose, Twist};
 

@@ -301,7 +301,8 @@ impl Contact {
         let turned = point.tangent_a * pressed.turned.0 + point.tangent_b * pressed.turned.1;
         // Both points have the same tangential motion: each takes the share of its normal load.
         let share = pressed.normal[k] / total;
-        (self.slide(point, &pressed.a, &pressed.b) - self.effective_mass.belt + turned) * share / self.effective_mass.tangent[k]
+        (self.slide(point, &pressed.a, &pressed.b) - self.effective_mass.belt + turned) * share
+            / self.effective_mass.tangent[k]
     }
 
     /// Rolling resistance, after the other impulses of the contact have rotated the bodies.

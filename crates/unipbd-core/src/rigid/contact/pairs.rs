@@ -1,7 +1,8 @@
 //! Pairs of pieces that may touch. The search is repeated only when a piece may leave its enlarged box.
 
+use super::bounds::{Bounds, NONE};
 use super::broad;
-use super::pieces::{Bounds, NONE, Pieces};
+use super::pieces::Pieces;
 use super::reach::Reach;
 use crate::math::Vector64;
 use crate::rigid::{Bodies, Surface};

@@ -4,8 +4,8 @@
 //! margin that covers the predicted relative motion, and an allowance of both bodies for what differs from it.
 //! A body that leaves its allowance, as after an impact, is searched again within the frame.
 
+use super::bounds::NONE;
 use super::manifold::entry;
-use super::pieces::NONE;
 use crate::rigid::{Bodies, Pose, Twist};
 
 /// Allowance of a body at rest, relative to its size.

@@ -67,7 +67,9 @@ impl Contact {
         let mut push = Push::default();
         for (k, point) in self.points().iter().enumerate() {
             let normal = point.normal_impulse / dt + total[k];
-            let slide = self.slide(point, &a, &b) - cache.surface.speed + point.tangent_a * turned_a + point.tangent_b * turned_b;
+            let slide = self.slide(point, &a, &b) - cache.surface.speed
+                + point.tangent_a * turned_a
+                + point.tangent_b * turned_b;
             let share = if all > 0.0 { normal / all } else { 0.0 };
             let (limit, held) = (self.effective_mass.friction * normal, point.tangent_impulse / dt);
             let stop = slide * share / self.effective_mass.tangent[k];

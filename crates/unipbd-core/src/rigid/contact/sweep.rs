@@ -1,11 +1,11 @@
 //! One pass over all contacts and joints that pushes bodies.
 
+use super::bounds::NONE;
 use super::contact_cache::ContactCache;
 use super::contact_set::Rows;
 use super::jacobi::Jacobi;
 use super::joint::Linked;
 use super::manifold::{Contact, entry};
-use super::pieces::NONE;
 use super::push::Push;
 use crate::rigid::{InverseMass, Twist};
 
