@@ -25,10 +25,12 @@ impl Default for SleepSettings {
 }
 
 /// Way since its rest began, relative to its size, within which a body is at rest. A slow drift leaves it.
-const DRIFT: f64 = 1e-3;
+const DRIFT: f64 = 4e-3;
 /// Part of the rest time for which the speed may have grown without a break: a body that begins to slide or to tip
 /// over grows faster in every frame, the jitter of a heap does not.
 const RISING: f64 = 0.5;
+/// Growth of the speed in a frame that counts as one: a body that begins to slide gains 3 % in its thirtieth frame.
+const GROWTH: f64 = 1.01;
 
 /// Rest times of bodies, and the islands of sleeping bodies.
 #[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
@@ -153,7 +155,7 @@ impl Islands {
             self.drifts[id] += velocity.scaled(frame_time);
             let drift = self.drifts[id].linear.length() + self.drifts[id].angular.abs() * reach;
             let slow = speed < settings.speed * (gravity * size).sqrt();
-            self.rising[id] = if speed > self.speeds[id] { self.rising[id] + frame_time } else { 0.0 };
+            self.rising[id] = if speed > GROWTH * self.speeds[id] { self.rising[id] + frame_time } else { 0.0 };
             self.speeds[id] = speed;
             let still = slow && drift < DRIFT * size && self.rising[id] < RISING * settings.delay;
             self.rest[id] = if still && !bodies.pushed[id] { self.rest[id] + frame_time } else { 0.0 };
