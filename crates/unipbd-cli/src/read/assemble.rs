@@ -171,6 +171,7 @@ fn body(shape: &BodyShape, state: BodyState) -> Result<Body, String> {
             kinetic_friction: shape.kinetic_friction,
             rolling_friction: shape.rolling_friction,
             restitution: shape.restitution,
+            speed: 0.0,
         },
         filter: CollisionFilter { layers: shape.layers, collides_with: shape.collides_with },
         asleep: state.asleep,

@@ -4,7 +4,7 @@ use super::carve::Solid;
 use crate::legacy;
 use crate::math::Vector64;
 use crate::rigid::Wall;
-use crate::rigid::contact::{ContactSettings, Contacts, DistanceRule, Joint, JointKind, Motor};
+use crate::rigid::contact::{ContactSettings, Contacts, DistanceRule, Joint, JointKind, Motor, SleepSettings};
 use crate::rigid::{
     Bodies, BodySpec, CollisionFilter, Elasticity, MassSpec, Motion, Pose, Repeat, Rotation, Surface, Twist, Waypoint,
 };
@@ -26,20 +26,21 @@ pub(super) fn build(scene: &Scene) -> (Bodies, Contacts) {
             let _ = bodies.add(spec);
         }
     }
-    let ContactDescription { relaxation, iterations } = scene.contacts;
-    let settings = ContactSettings { relaxation, iterations, ..ContactSettings::default() };
+    let ContactDescription { method, relaxation, iterations, sleep, sleep_speed, sleep_delay } = scene.contacts;
+    let sleep = sleep.then_some(SleepSettings { speed: sleep_speed, delay: sleep_delay });
+    let settings = ContactSettings { method, relaxation, iterations, sleep, ..ContactSettings::default() };
     let mut contacts = match scene.legacy.changes_contacts() {
         false => Contacts::new(&walls(scene), settings),
         true => legacy::contacts(&walls(scene), settings, &scene.legacy),
     };
     for description in &scene.joint {
         if let Some(joint) = joint(description, &bodies) {
-            contacts.add_joint(joint);
+            contacts.add_joint(joint, description.collide_connected());
         }
     }
     for rope in &scene.rope {
         if let Some(joint) = rope_joint(rope, scene.spacing, &bodies) {
-            contacts.add_joint(joint);
+            contacts.add_joint(joint, true);
         }
     }
     (bodies, contacts)
@@ -80,6 +81,7 @@ fn specification(description: &BodyDescription, name: String, position: Vector64
             kinetic_friction: description.kinetic_friction.unwrap_or(description.friction),
             rolling_friction: description.rolling_friction,
             restitution: description.restitution,
+            speed: description.surface_speed,
         },
         filter: CollisionFilter {
             layers: layers(&description.layers),
@@ -171,7 +173,11 @@ fn rope_joint(rope: &Rope, spacing: f64, bodies: &Bodies) -> Option<Joint> {
 fn walls(scene: &Scene) -> Vec<Wall> {
     let mut walls = Vec::new();
     for wall in &scene.half_plane {
-        walls.push(Wall::half_plane(wall.point.into(), wall.normal.into(), Surface::with_friction(wall.friction)));
+        let (normal, velocity) = (Vector64::from(wall.normal), Vector64::from(wall.velocity));
+        // A solid lies to the left of its outline.
+        let speed = velocity.dot(normal.normalize().perp());
+        let surface = Surface { speed, ..Surface::with_friction(wall.friction) };
+        walls.push(Wall::half_plane(wall.point.into(), normal, surface));
     }
     for tank in &scene.tank {
         let sides = [Side::Left, Side::Right, Side::Bottom, Side::Top];

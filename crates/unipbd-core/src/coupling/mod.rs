@@ -1,6 +1,7 @@
 //! Rigid bodies among the particles: their lattice samples as rows, loads from the fluid, and a
 //! fluid that stays outside.
 
+mod demand;
 mod push_out;
 mod soft_bodies;
 
@@ -95,17 +96,6 @@ impl RigidBodies {
         let bodies = self.bodies.at_saved(saved.bodies)?;
         let contacts = self.contacts.at_saved(saved.contacts, &bodies)?;
         Some(RigidBodies { bodies, contacts, ..self.clone() })
-    }
-
-    /// Bodies that may have to carry each other: the height of all that are awake over the smallest.
-    pub(crate) fn support_chain(&self, gravity: Vector64) -> f64 {
-        let bodies = &self.bodies;
-        let awake = || (0..bodies.len()).filter(|&id| bodies.is_dynamic(id) && !bodies.asleep[id]);
-        let down = gravity.normalize_or_zero();
-        let heights = awake().map(|id| bodies.poses[id].position.dot(down));
-        let (low, high) = heights.fold((f64::INFINITY, f64::NEG_INFINITY), |(l, h), y| (l.min(y), h.max(y)));
-        let smallest = awake().map(|id| bodies.sizes[id]).fold(f64::INFINITY, f64::min);
-        if high >= low { ((high - low) / smallest + 1.0).min(awake().count() as f64) } else { 0.0 }
     }
 
     /// Finds contacts, predicts the bodies and applies the impulses kept from the last substep.

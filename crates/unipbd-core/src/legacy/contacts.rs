@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::mass_scaling;
 use crate::math::Vector64;
-use crate::rigid::contact::{Contact, ContactSettings, ContactSolver, Contacts, Jacobi, Push, Rows, Split};
+use crate::rigid::contact::{Contact, ContactSettings, ContactSolver, Contacts, Linked, Push, Split, Sweep, entry};
 use crate::rigid::{Bodies, InverseMass, Surface, Twist, Wall};
 use crate::scene::LegacySettings;
 
@@ -24,15 +24,19 @@ struct LegacyContacts {
 }
 
 impl ContactSolver for LegacyContacts {
+    fn at_once(&self) -> bool {
+        true
+    }
+
     fn kept(&self) -> f64 {
         if self.averaged { 0.0 } else { Split.kept() }
     }
 
-    fn sweep(&self, jacobi: &mut Jacobi, rows: Rows<'_>, displacements: &[Twist]) {
+    fn sweep(&self, sweep: Sweep<'_>) {
         if self.averaged {
-            jacobi.sweep(rows, displacements.len(), |contact, cache| project(contact, &cache.surface, displacements));
+            sweep.run(|contact, cache, displacements| project(contact, &cache.surface, displacements), Linked::solve);
         } else {
-            Split.sweep(jacobi, rows, displacements);
+            Split.sweep(sweep);
         }
     }
 
@@ -47,7 +51,10 @@ impl ContactSolver for LegacyContacts {
 /// that friction holds back for this depth.
 fn project(contact: &mut Contact, surface: &Surface, displacements: &[Twist]) -> Push {
     let mut push = Push::default();
-    let Some(pressed) = contact.press(displacements, [0.0; 2]) else { return push };
+    let Some(pressed) = contact.press((entry(displacements, contact.a), entry(displacements, contact.b)), [0.0; 2])
+    else {
+        return push;
+    };
     for k in 0..contact.points().len() {
         let normal = pressed.normal[k];
         let held = surface.held_back(contact.stop(k, &pressed), normal);

@@ -160,7 +160,9 @@ pub enum SubstepReason {
     TrustRegion,
     /// The pressure and the target of the scene for the largest compression.
     Compression,
-    /// The height of stacked bodies.
+    /// The speed and spin of rigid bodies.
+    Bodies,
+    /// The height of stacked bodies, and the mass ratio of bodies that act on each other.
     Support,
     /// Less would do now, but the number falls slowly.
     Hysteresis,
@@ -168,11 +170,12 @@ pub enum SubstepReason {
 
 impl SubstepReason {
     /// All reasons.
-    pub const ALL: [SubstepReason; 6] = [
+    pub const ALL: [SubstepReason; 7] = [
         SubstepReason::Fixed,
         SubstepReason::Speed,
         SubstepReason::TrustRegion,
         SubstepReason::Compression,
+        SubstepReason::Bodies,
         SubstepReason::Support,
         SubstepReason::Hysteresis,
     ];
@@ -184,6 +187,7 @@ impl SubstepReason {
             SubstepReason::Speed => "speed",
             SubstepReason::TrustRegion => "trust_region",
             SubstepReason::Compression => "compression",
+            SubstepReason::Bodies => "bodies",
             SubstepReason::Support => "support",
             SubstepReason::Hysteresis => "hysteresis",
         }

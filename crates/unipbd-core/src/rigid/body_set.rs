@@ -30,7 +30,7 @@ pub(super) struct Script {
 /// All bodies of a run. A body's index is its id: bodies are never removed or renumbered.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Bodies {
-    /// Distance of lattice samples, twice the largest contact radius [m].
+    /// Distance of lattice samples [m].
     spacing: f64,
     pub(crate) poses: Vec<Pose>,
     pub(crate) velocities: Vec<Twist>,
@@ -109,7 +109,7 @@ impl Bodies {
         self.contact_loads.push(Twist::ZERO);
         self.fluid_loads.push(Twist::ZERO);
         self.pushed.push(false);
-        self.cores.push(shape.core(0.5 * self.spacing));
+        self.cores.push(shape.core());
         self.reaches.push(shape.bounding_radius());
         self.sizes.push(moments.area.sqrt());
         let gravity_factor = spec.gravity_factor;
@@ -194,6 +194,11 @@ impl Bodies {
     /// Elasticity of a body with shape matching.
     pub(crate) fn elasticity(&self, id: usize) -> Option<Elasticity> {
         self.matched[id]
+    }
+
+    /// Acceleration of a dynamic body by gravity [m/s^2].
+    pub(crate) fn pull(&self, id: usize, gravity: Vector64) -> Vector64 {
+        if self.is_dynamic(id) { gravity * self.scripts[id].gravity_factor } else { Vector64::ZERO }
     }
 
     /// Sets pose and velocity of a body made of particles from its particles, and the outline of a soft body.

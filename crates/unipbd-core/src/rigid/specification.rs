@@ -14,6 +14,8 @@ pub struct Surface {
     pub rolling_friction: f64,
     /// Rebound speed over impact speed, 0 to 1.
     pub restitution: f64,
+    /// Speed of the surface along the outline, counter-clockwise around the solid: a conveyor belt [m/s].
+    pub speed: f64,
 }
 
 impl Default for Surface {
@@ -25,7 +27,13 @@ impl Default for Surface {
 impl Surface {
     /// One coefficient for sticking and sliding, no rebound, no rolling resistance.
     pub const fn with_friction(coefficient: f64) -> Surface {
-        Surface { static_friction: coefficient, kinetic_friction: coefficient, rolling_friction: 0.0, restitution: 0.0 }
+        Surface {
+            static_friction: coefficient,
+            kinetic_friction: coefficient,
+            rolling_friction: 0.0,
+            restitution: 0.0,
+            speed: 0.0,
+        }
     }
 
     /// The same with a coefficient of restitution.
@@ -41,7 +49,7 @@ impl Surface {
     }
 
     /// The combined coefficients of two surfaces: the geometric mean of the friction coefficients (one smooth
-    /// side makes a smooth contact), the larger restitution, the larger rolling friction.
+    /// side makes a smooth contact), the larger restitution, the larger rolling friction, the sum of the surface speeds.
     pub fn combined(&self, other: &Surface) -> Surface {
         let kinetic = (self.kinetic_friction * other.kinetic_friction).sqrt();
         Surface {
@@ -49,6 +57,7 @@ impl Surface {
             kinetic_friction: kinetic,
             rolling_friction: self.rolling_friction.max(other.rolling_friction),
             restitution: self.restitution.max(other.restitution),
+            speed: self.speed + other.speed,
         }
     }
 }

@@ -60,7 +60,8 @@ pub struct BodyDescription {
     /// Mass, instead of the density [kg].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass: Option<f64>,
-    /// Coulomb friction coefficient.
+    /// Coulomb friction coefficient, 0.5 by default; walls have 0. Two surfaces have the root of the product of theirs,
+    /// the larger restitution, the larger rolling friction.
     #[serde(default = "half")]
     pub friction: f64,
     /// Friction coefficient while sliding; left out, the same.
@@ -72,6 +73,9 @@ pub struct BodyDescription {
     /// Rebound speed over impact speed, 0 to 1.
     #[serde(default)]
     pub restitution: f64,
+    /// Speed of the surface along the outline, counter-clockwise: a conveyor belt, for other bodies [m/s].
+    #[serde(default)]
+    pub surface_speed: f64,
     /// Collision layers the body is in, 0 to 31.
     #[serde(default = "first_layer")]
     pub layers: Vec<u8>,
@@ -216,6 +220,9 @@ pub struct JointDescription {
     /// Largest torque of the motor [N m].
     #[serde(default = "boundless")]
     pub motor_torque: f64,
+    /// Whether the two bodies collide with each other; left out, those at a rope do, and others do not.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub collide_connected: Option<bool>,
 }
 
 impl JointDescription {
@@ -231,7 +238,13 @@ impl JointDescription {
             compliance: 0.0,
             motor_speed_deg: None,
             motor_torque: boundless(),
+            collide_connected: None,
         }
+    }
+
+    /// Whether the two bodies collide with each other.
+    pub fn collide_connected(&self) -> bool {
+        self.collide_connected.unwrap_or(self.kind == JointRule::Rope)
     }
 }
 

@@ -4,21 +4,55 @@ use serde::{Deserialize, Serialize};
 /// particles. It must lie below 2.
 pub(crate) const OVER_RELAXATION: f64 = 1.8;
 
-/// How contacts of bodies are solved.
+/// Speed below which bodies may sleep, relative to sqrt(gravity x size).
+pub(crate) const SLEEP_SPEED: f64 = 0.02;
+/// Rest time before bodies sleep [s].
+pub(crate) const SLEEP_DELAY: f64 = 0.5;
+
+/// How contacts of bodies are solved, and when bodies sleep.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct ContactDescription {
-    /// Over-relaxation omega, 1 to 2.
+    /// The order of contacts and joints in an iteration.
+    pub method: ContactMethod,
+    /// Over-relaxation omega of split Jacobi, 1 to 2.
     pub relaxation: f64,
-    /// Iterations in a substep, as many before the liquid pushes the bodies as after. In a high heap a second one costs
+    /// Iterations in a substep, as many before the liquid pushes the bodies as after. In a high heap one more costs
     /// less than another substep and calms it sooner.
     pub iterations: u32,
+    /// Whether bodies at rest sleep: they are held still until something touches or pushes them.
+    pub sleep: bool,
+    /// Speed of the fastest point of a body below which it may sleep, relative to sqrt(gravity x size of the body).
+    /// Nothing sleeps without gravity, while it drifts, while its speed grows, or while a motor turns it.
+    pub sleep_speed: f64,
+    /// Time at rest before bodies that touch each other sleep [s].
+    pub sleep_delay: f64,
+}
+
+/// The order of contacts and joints in an iteration.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum ContactMethod {
+    /// One after the other: stacks and unequal masses need fewer substeps.
+    #[default]
+    GaussSeidel,
+    /// All from one state, with the mass of a body split among its contacts (Tonge et al. 2012): a mirrored scene stays
+    /// mirrored.
+    SplitJacobi,
 }
 
 impl Default for ContactDescription {
     fn default() -> Self {
-        ContactDescription { relaxation: OVER_RELAXATION, iterations: 1 }
+        ContactDescription {
+            method: ContactMethod::GaussSeidel,
+            relaxation: OVER_RELAXATION,
+            iterations: 2,
+            sleep: true,
+            sleep_speed: SLEEP_SPEED,
+            sleep_delay: SLEEP_DELAY,
+        }
     }
 }
 

@@ -82,6 +82,7 @@ impl BodyDescription {
             kinetic_friction: None,
             rolling_friction: 0.0,
             restitution: 0.0,
+            surface_speed: 0.0,
             layers: vec![0],
             collides_with: None,
             rotation: RotationRule::Free,

@@ -12,10 +12,11 @@ pub struct HalfPlane {
     pub point: [f64; 2],
     /// Direction from the wall towards the particles; need not have length 1.
     pub normal: [f64; 2],
-    /// Velocity at which the wall slides along itself: viscous fluids without slip feel it [m/s].
+    /// Velocity at which the wall slides along itself: viscous fluids without slip and bodies with friction feel it
+    /// [m/s].
     #[serde(default)]
     pub velocity: [f64; 2],
-    /// Coulomb friction coefficient.
+    /// Coulomb friction coefficient; a body on it has the root of the product with its own.
     #[serde(default)]
     pub friction: f64,
     /// Whether a fluid with a kinematic viscosity slips along it.
@@ -38,7 +39,7 @@ pub struct Tank {
     /// Sides without a wall.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub open: Vec<Side>,
-    /// Coulomb friction coefficient.
+    /// Coulomb friction coefficient; a body on it has the root of the product with its own.
     #[serde(default)]
     pub friction: f64,
     /// Whether a fluid with a kinematic viscosity slips along it.
@@ -58,7 +59,7 @@ pub struct Obstacle {
     pub min: [f64; 2],
     /// Upper right corner [m].
     pub max: [f64; 2],
-    /// Coulomb friction coefficient.
+    /// Coulomb friction coefficient; a body on it has the root of the product with its own.
     #[serde(default)]
     pub friction: f64,
     /// Whether a fluid with a kinematic viscosity slips along it.

@@ -1,15 +1,12 @@
-//! Rounded cores: a solid as convex polygons grown by a contact radius.
-//!
-//! The outline is moved inwards by the radius; growing it again gives back every face and rounds
-//! the corners. Two rounded solids have a well-defined normal even when they slightly overlap.
+//! A solid as convex polygons, for contacts: the pieces cover the outline exactly.
 
 use super::{Shape, decompose::convex_decomposition, polygon};
 use crate::math::Vector64;
 
-/// The rounded convex pieces of a solid.
+/// The convex pieces of a solid.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Core {
-    /// Distance of the surface outside the pieces [m].
+    /// Radius of a disc; 0 for a polygon [m].
     pub radius: f64,
     /// Convex pieces; a disc is one piece with one vertex.
     pub pieces: Vec<ConvexPiece>,
@@ -24,25 +21,21 @@ pub struct ConvexPiece {
     pub normals: Vec<Vector64>,
     /// Whether that edge is part of the outline, and not a cut through the solid.
     pub outer: Vec<bool>,
-    /// Whether the vertex can be in contact: convex in the outline, and not listed by another piece.
-    pub sampled: Vec<bool>,
+    /// Whether the vertex is a convex corner of the outline, and not listed by another piece.
+    pub corners: Vec<bool>,
 }
 
-pub(super) fn core(shape: &Shape, radius: f64) -> Core {
+pub(super) fn core(shape: &Shape) -> Core {
     match shape {
         Shape::Disc { radius } => Core { radius: *radius, pieces: vec![ConvexPiece::point()] },
-        Shape::Polygon(corners) => polygon_core(&polygon::tidied(corners), radius),
+        Shape::Polygon(corners) => {
+            let outline = polygon::tidied(corners);
+            let mut owned = vec![false; outline.len()];
+            let pieces = convex_decomposition(&outline);
+            let pieces = pieces.iter().map(|piece| ConvexPiece::cut(&outline, piece, &mut owned)).collect();
+            Core { radius: 0.0, pieces }
+        }
     }
-}
-
-/// Halves the radius until the inset outline is the same polygon, only smaller.
-fn polygon_core(corners: &[Vector64], radius: f64) -> Core {
-    let radii = (0..6u32).map(|halvings| radius / f64::from(1 << halvings));
-    let fitting = radii.filter(|&r| r > 0.0).find_map(|r| Some((r, inset(corners, r)?)));
-    let (radius, outline) = fitting.unwrap_or((0.0, corners.to_vec()));
-    let mut owned = vec![false; outline.len()];
-    let pieces = convex_decomposition(&outline);
-    Core { radius, pieces: pieces.iter().map(|piece| ConvexPiece::cut(&outline, piece, &mut owned)).collect() }
 }
 
 impl ConvexPiece {
@@ -51,7 +44,7 @@ impl ConvexPiece {
             vertices: vec![Vector64::ZERO],
             normals: vec![Vector64::ZERO],
             outer: vec![true],
-            sampled: vec![true],
+            corners: vec![true],
         }
     }
 
@@ -62,24 +55,7 @@ impl ConvexPiece {
         let normals = polygon::edges(&vertices).map(|(p, q)| -(q - p).perp().normalize_or_zero()).collect();
         let outer = (0..m).map(|k| piece[(k + 1) % m] == (piece[k] + 1) % n).collect();
         let convex = |k: usize| (corner(k) - corner(k + n - 1)).perp_dot(corner(k + 1) - corner(k)) > 0.0;
-        let sampled = piece.iter().map(|&k| convex(k) && !std::mem::replace(&mut owned[k], true)).collect();
-        ConvexPiece { vertices, normals, outer, sampled }
+        let corners = piece.iter().map(|&k| convex(k) && !std::mem::replace(&mut owned[k], true)).collect();
+        ConvexPiece { vertices, normals, outer, corners }
     }
-}
-
-/// The outline moved inwards by `radius`, or `None` if an edge would shrink below a quarter.
-fn inset(corners: &[Vector64], radius: f64) -> Option<Vec<Vector64>> {
-    let n = corners.len();
-    let normal = |k: usize| -(corners[(k + 1) % n] - corners[k % n]).perp().normalize();
-    let moved: Vec<Vector64> = (0..n)
-        .map(|k| {
-            let (before, after) = (normal(k + n - 1), normal(k));
-            corners[k] - (before + after) * (radius / (1.0 + before.dot(after)).max(1e-9))
-        })
-        .collect();
-    let kept = (0..n).all(|k| {
-        let (edge, short) = (corners[(k + 1) % n] - corners[k], moved[(k + 1) % n] - moved[k]);
-        short.dot(edge) >= 0.25 * edge.length_squared()
-    });
-    (kept && polygon::is_simple(&moved)).then_some(moved)
 }

@@ -1,5 +1,5 @@
 //! Shapes in the plane: outlines, their areas and moments, signed distances, lattice samples, and
-//! the rounded convex cores used for contacts.
+//! the convex pieces used for contacts.
 
 mod core_pieces;
 mod decompose;
@@ -9,7 +9,7 @@ mod sampling;
 pub use core_pieces::{ConvexPiece, Core};
 pub use decompose::convex_decomposition;
 pub use polygon::Moments;
-pub(crate) use polygon::{first_crossing, nearest as nearest_on_polygon};
+pub(crate) use polygon::{edges, first_crossing, nearest as nearest_on_polygon};
 pub use sampling::Samples;
 
 use crate::math::Vector64;
@@ -146,8 +146,8 @@ impl Shape {
         sampling::fill(self, spacing)
     }
 
-    /// The rounded convex pieces used for contacts, with a contact radius of at most `radius`.
-    pub fn core(&self, radius: f64) -> Core {
-        core_pieces::core(self, radius)
+    /// The convex pieces used for contacts.
+    pub fn core(&self) -> Core {
+        core_pieces::core(self)
     }
 }

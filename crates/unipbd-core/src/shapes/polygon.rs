@@ -15,7 +15,7 @@ pub struct Moments {
 }
 
 /// Edges of a closed outline as pairs of corners.
-pub(super) fn edges(corners: &[Vector64]) -> impl Iterator<Item = (Vector64, Vector64)> + '_ {
+pub(crate) fn edges(corners: &[Vector64]) -> impl Iterator<Item = (Vector64, Vector64)> + '_ {
     (0..corners.len()).map(|k| (corners[k], corners[(k + 1) % corners.len()]))
 }
 

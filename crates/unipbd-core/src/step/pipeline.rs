@@ -10,7 +10,8 @@ pub enum Stage {
     Emit,
     /// Applies body forces to the velocities and predicts the positions.
     Predict,
-    /// Predicts the bodies, finds their contacts and solves contacts and joints once.
+    /// Searches the contacts of bodies, once per frame if they move as predicted, predicts the bodies, and solves
+    /// contacts and joints once.
     Contacts,
     /// Wakes the liquid around bodies that were woken.
     WakeAroundBodies,

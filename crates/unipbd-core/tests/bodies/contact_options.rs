@@ -112,10 +112,10 @@ fn mass_scaling_lets_a_stack_stand_with_fewer_substeps() {
 #[test]
 fn more_iterations_let_a_stack_stand_with_fewer_substeps() {
     let settings = |iterations| ContactSettings { iterations, ..never_asleep() };
-    let with = |iterations| lean(20, 4, World::with_settings(&ground(), settings(iterations)));
+    let with = |iterations| lean(20, 2, World::with_settings(&ground(), settings(iterations)));
     let (one, four) = (with(1), with(4));
-    println!("20 boxes, 4 substeps: {one:.2e} m with one iteration, {four:.2e} m with four");
-    assert!(one > 0.5 && four < 0.1);
+    println!("20 boxes, 2 substeps: {one:.2e} m with one iteration, {four:.2e} m with four");
+    assert!(one > 0.1 && four < 0.1);
 }
 
 #[test]

@@ -24,7 +24,7 @@ fn pendulum_keeps_its_period_and_energy() {
     let mut spec = body(rod, place, Surface::default());
     spec.pose.angle = angle;
     world.add(spec);
-    world.contacts.add_joint(to_world(0, at(0.0, 0.5), pivot, hinge(None)));
+    world.contacts.add_joint(to_world(0, at(0.0, 0.5), pivot, hinge(None)), false);
     let (mut crossings, mut last, mut largest) = (Vec::new(), angle, 0.0f64);
     for _ in 0..60 * 60 {
         world.frame();
@@ -54,7 +54,7 @@ fn motor_turns_a_wheel_at_its_speed_and_stalls_at_its_torque() {
     let place = at(0.0, 3.0);
     world.add(body(Shape::regular(8, 1.0), place, Surface::default()));
     let motor = |max_torque| hinge(Some(Motor { speed: 2.0, max_torque }));
-    let joint = world.contacts.add_joint(to_world(0, at(0.0, 0.0), place, motor(500.0)));
+    let joint = world.contacts.add_joint(to_world(0, at(0.0, 0.0), place, motor(500.0)), false);
     world.run(0.5);
     let inertia = world.bodies.views()[0].inertia;
     let spun = world.velocity(0).angular;
@@ -77,7 +77,7 @@ fn spinning_wheel_on_a_hinge_beside_its_centre_keeps_its_energy() {
     let mut spec = unit_box(at(1.0, 0.0));
     spec.velocity = unipbd_core::rigid::Twist { linear: at(0.0, spin), angular: spin };
     world.add(spec);
-    world.contacts.add_joint(to_world(0, at(-1.0, 0.0), at(0.0, 0.0), hinge(None)));
+    world.contacts.add_joint(to_world(0, at(-1.0, 0.0), at(0.0, 0.0), hinge(None)), false);
     world.run(10.0);
     let kept = world.velocity(0).angular / spin;
     let radius = world.position(0).length();
@@ -95,7 +95,7 @@ fn chain_of_hinged_boxes_hangs_without_stretching() {
             None => to_world(id, anchor, place, hinge(None)),
             Some(last) => Joint { body: id, other: Some(last), anchor, other_anchor: at(0.5, 0.0), kind: hinge(None) },
         };
-        world.contacts.add_joint(joint);
+        world.contacts.add_joint(joint, false);
     }
     let mut stretch = 0.0f64;
     for _ in 0..600 {
@@ -117,7 +117,7 @@ fn spring_stretches_by_its_compliance_and_swings_at_its_frequency() {
     let spec = BodySpec { mass: MassSpec::Mass(mass), rotation: Rotation::Locked, ..unit_box(at(0.0, -2.0)) };
     world.add(spec);
     let kind = JointKind::Distance { length: 2.0, compliance, rule: DistanceRule::Exact };
-    world.contacts.add_joint(to_world(0, at(0.0, 0.0), at(0.0, 0.0), kind));
+    world.contacts.add_joint(to_world(0, at(0.0, 0.0), at(0.0, 0.0), kind), false);
     let (mut sum, mut lowest) = (0.0, 0.0f64);
     for _ in 0..600 {
         world.frame();
@@ -134,7 +134,7 @@ fn rope_holds_at_its_length_and_is_slack_below() {
     let mut world = World::new(&[]);
     world.add(unit_box(at(0.0, -0.5)));
     let kind = JointKind::Distance { length: 2.0, compliance: 0.0, rule: DistanceRule::AtMost };
-    world.contacts.add_joint(to_world(0, at(0.0, 0.0), at(0.0, 0.0), kind));
+    world.contacts.add_joint(to_world(0, at(0.0, 0.0), at(0.0, 0.0), kind), false);
     world.run(0.25);
     let fallen = -0.5 - world.position(0).y;
     world.run(3.0);

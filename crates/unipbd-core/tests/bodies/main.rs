@@ -1,5 +1,6 @@
 //! Rigid bodies and their contacts, against exact results and measured bars.
 
+mod answers;
 mod contact_options;
 mod friction;
 mod impacts;

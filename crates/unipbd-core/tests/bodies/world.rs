@@ -4,6 +4,7 @@ use unipbd_core::Vector64;
 use unipbd_core::rigid::Wall;
 use unipbd_core::rigid::contact::{ContactSettings, Contacts};
 use unipbd_core::rigid::{Bodies, BodySpec, Pose, Surface, Twist};
+use unipbd_core::scene::ContactMethod;
 use unipbd_core::shapes::Shape;
 
 pub const GRAVITY: f64 = 9.81;
@@ -19,6 +20,11 @@ pub fn floor(surface: Surface) -> Wall {
 
 pub fn never_asleep() -> ContactSettings {
     ContactSettings { sleep: None, ..ContactSettings::default() }
+}
+
+/// Split Jacobi, without sleep: a mirrored scene stays mirrored.
+pub fn mirrored() -> ContactSettings {
+    ContactSettings { method: ContactMethod::SplitJacobi, ..never_asleep() }
 }
 
 /// A body with this shape, place and surface, as heavy as water.

@@ -1,7 +1,8 @@
 //! Broad phase: pairs of pieces that can touch. Boxes are sorted into square cells; boxes much larger than
 //! a cell are compared with all others.
 
-use super::pieces::{Bounds, Pieces};
+use super::bounds::Bounds;
+use super::pieces::Pieces;
 use crate::math::Vector64;
 
 /// Pairs of pieces (the smaller index first) and of pieces with half-planes, with overlapping boxes

@@ -1,6 +1,8 @@
 //! A contact point, and the rarely read data of a contact.
 
-use super::collide::FeaturePair;
+use super::frames::Frame;
+use super::touch::{Reference, Touch};
+use crate::math::Vector64;
 use crate::rigid::Surface;
 
 /// One contact point in the sweeps.
@@ -39,28 +41,71 @@ pub(crate) struct ContactCache {
     /// The wall, or `NONE`.
     pub wall: u32,
     pub surface: Surface,
-    /// The vertex and face of each point.
-    pub(super) features: [FeaturePair; 2],
+    /// The solid that the normal is fixed to, and the normal in its coordinates.
+    pub(super) reference: Reference,
+    pub(super) normal: Vector64,
+    /// Radii of the discs, 0 for polygons [m].
+    pub(super) radii: [f64; 2],
+    /// The points of each body, in its coordinates [m].
+    pub(super) anchors: [(Vector64, Vector64); 2],
+    /// The vertices that identify each point.
+    pub(super) features: [u32; 2],
     /// Normal velocities at the start of the substep [m/s].
     pub approach: [f64; 2],
-    /// Impulses of the rebound [kg m/s]; 0 without a rebound.
-    pub rebound: [f64; 2],
+    /// Normal part of gravity on the first body relative to the second [m/s^2].
+    pub pull: f64,
+    /// Rebound of each point in this substep.
+    pub rebound: [Rebound; 2],
+}
+
+/// The rebound of a contact point in a substep; all 0 without one.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub(crate) struct Rebound {
+    /// Normal velocity after it [m/s].
+    pub velocity: f64,
+    /// Distance flown after it in the same substep [m].
+    pub flown: f64,
+    /// Impulses along normal and tangent, in addition to those of the substep [kg m/s].
+    pub normal: f64,
+    pub tangent: f64,
 }
 
 impl ContactCache {
     /// Whether all numbers are finite.
     pub fn is_finite(&self) -> bool {
-        self.approach.into_iter().chain(self.rebound).all(f64::is_finite)
+        let of_rebound = |rebound: &Rebound| {
+            [rebound.velocity, rebound.flown, rebound.normal, rebound.tangent].into_iter().all(f64::is_finite)
+        };
+        let numbers = self.approach.into_iter().chain(self.radii).chain([self.pull]);
+        let anchors = self.anchors.iter().all(|(on_a, on_b)| on_a.is_finite() && on_b.is_finite());
+        numbers.into_iter().all(f64::is_finite)
+            && anchors
+            && self.normal.is_finite()
+            && self.rebound.iter().all(of_rebound)
     }
 
-    pub fn new(pair: u32, wall: u32, surface: Surface) -> ContactCache {
+    pub(super) fn new((pair, wall): (u32, u32), surface: Surface, touch: &Touch, frames: [&Frame; 2]) -> ContactCache {
+        let of = match touch.reference {
+            Reference::First => frames[0],
+            Reference::Second | Reference::Points => frames[1],
+        };
         ContactCache {
             pair,
             wall,
             surface,
-            features: [FeaturePair::default(); 2],
+            reference: touch.reference,
+            normal: of.turn_back(touch.normal),
+            radii: touch.radii,
+            anchors: Default::default(),
+            features: [0; 2],
             approach: [0.0; 2],
-            rebound: [0.0; 2],
+            pull: 0.0,
+            rebound: [Rebound::default(); 2],
         }
+    }
+
+    /// Whether a point rebounded in the last substep.
+    pub fn rebounded(&self) -> bool {
+        self.rebound != [Rebound::default(); 2]
     }
 }

@@ -1,16 +1,18 @@
 //! Sleep by islands: connected bodies fall asleep together, once all of them have been slow for a
 //! while, and wake together. Impulses are kept, so that a woken pile keeps its state.
 
+use super::bounds::NONE;
 use super::joint::Linked;
 use super::manifold::Contact;
-use super::pieces::NONE;
 use super::union_find::UnionFind;
-use crate::rigid::Bodies;
+use crate::rigid::{Bodies, Twist};
+use crate::scene::{SLEEP_DELAY, SLEEP_SPEED};
 
-/// Sleep thresholds of bodies.
+/// When bodies fall asleep.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct SleepSettings {
-    /// Speed of the fastest point of a body, |v| + |w| R, below which it counts as at rest [m/s].
+    /// Speed of the fastest point of a body, |v| + |w| R, below which it may be at rest, relative to
+    /// sqrt(gravity x size of the body): without gravity nothing sleeps.
     pub speed: f64,
     /// Rest time of a whole island before it sleeps [s].
     pub delay: f64,
@@ -18,20 +20,28 @@ pub struct SleepSettings {
 
 impl Default for SleepSettings {
     fn default() -> Self {
-        SleepSettings { speed: 0.05, delay: 0.5 }
+        SleepSettings { speed: SLEEP_SPEED, delay: SLEEP_DELAY }
     }
 }
 
-/// Allowed gain of speed of a body at rest, relative to the speed threshold.
-const GATHERED: f64 = 0.25;
+/// Way since its rest began, relative to its size, within which a body is at rest. A slow drift leaves it.
+const DRIFT: f64 = 4e-3;
+/// Part of the rest time for which the speed may have grown without a break: a body that begins to slide or to tip
+/// over grows faster in every frame, the jitter of a heap does not.
+const RISING: f64 = 0.5;
+/// Growth of the speed in a frame that counts as one: a body that begins to slide gains 3 % in its thirtieth frame.
+const GROWTH: f64 = 1.01;
 
 /// Rest times of bodies, and the islands of sleeping bodies.
 #[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Islands {
     /// Rest time of each body [s].
     rest: Vec<f64>,
-    /// Its lowest speed since then [m/s].
-    calmest: Vec<f64>,
+    /// How far its velocity has carried it since its rest began.
+    drifts: Vec<Twist>,
+    /// Its last speed [m/s], and the time for which it has grown [s].
+    speeds: Vec<f64>,
+    rising: Vec<f64>,
     /// The island of each sleeping body.
     island: Vec<u32>,
     touching: UnionFind,
@@ -50,7 +60,9 @@ impl Islands {
 
     pub fn resize(&mut self, bodies: usize) {
         self.rest.resize(bodies, 0.0);
-        self.calmest.resize(bodies, 0.0);
+        self.drifts.resize(bodies, Twist::ZERO);
+        self.speeds.resize(bodies, 0.0);
+        self.rising.resize(bodies, 0.0);
         self.island.resize(bodies, NONE);
     }
 
@@ -107,9 +119,10 @@ impl Islands {
         contacts: &[Contact],
         joints: &[Linked],
         settings: &SleepSettings,
-        frame_time: f64,
+        (frame_time, gravity): (f64, f64),
     ) -> bool {
-        self.measure_rest(bodies, settings, frame_time);
+        self.measure_rest(bodies, settings, (frame_time, gravity));
+        self.disturb_by_motors(bodies, joints);
         if !self.rest.iter().zip(&bodies.asleep).any(|(&rest, &asleep)| rest >= settings.delay && !asleep) {
             return false;
         }
@@ -140,15 +153,32 @@ impl Islands {
         }
     }
 
-    fn measure_rest(&mut self, bodies: &Bodies, settings: &SleepSettings, frame_time: f64) {
+    fn measure_rest(&mut self, bodies: &Bodies, settings: &SleepSettings, (frame_time, gravity): (f64, f64)) {
         for id in 0..bodies.len() {
             let velocity = &bodies.velocities[id];
-            let speed = velocity.linear.length() + velocity.angular.abs() * bodies.reaches[id];
-            // A body with increasing speed is not at rest, even if it is slow: a block starts to slide in this way.
-            let gathers = speed > self.calmest[id] + GATHERED * settings.speed;
-            let still = speed < settings.speed && !bodies.pushed[id] && !gathers;
-            self.rest[id] = if still { self.rest[id] + frame_time } else { 0.0 };
-            self.calmest[id] = if still { speed.min(self.calmest[id]) } else { speed };
+            let (reach, size) = (bodies.reaches[id], bodies.sizes[id]);
+            let speed = velocity.linear.length() + velocity.angular.abs() * reach;
+            // The removal of old overlap moves a body, too, but that is no motion.
+            self.drifts[id] += velocity.scaled(frame_time);
+            let drift = self.drifts[id].linear.length() + self.drifts[id].angular.abs() * reach;
+            let slow = speed < settings.speed * (gravity * size).sqrt();
+            self.rising[id] = if speed > GROWTH * self.speeds[id] { self.rising[id] + frame_time } else { 0.0 };
+            self.speeds[id] = speed;
+            let still = slow && drift < DRIFT * size && self.rising[id] < RISING * settings.delay;
+            self.rest[id] = if still && !bodies.pushed[id] { self.rest[id] + frame_time } else { 0.0 };
+            if self.rest[id] == 0.0 {
+                self.drifts[id] = Twist::ZERO;
+            }
+        }
+    }
+
+    /// A body that a motor turns does not rest, however slow it is; one that a motor holds may.
+    fn disturb_by_motors(&mut self, bodies: &Bodies, joints: &[Linked]) {
+        for linked in joints.iter().filter(|linked| linked.is_driven()) {
+            let (a, b) = linked.bodies();
+            for body in [a, b].into_iter().filter(|&body| body != NONE && bodies.is_dynamic(body as usize)) {
+                self.rest[body as usize] = 0.0;
+            }
         }
     }
 

@@ -1,9 +1,9 @@
 //! A Jacobi sweep over contacts: each contact computes its push from the same state into its own slot, then
 //! each body sums its pushes in the order of the contacts. The result is bitwise equal for any number of threads.
 
+use super::bounds::NONE;
 use super::contact_cache::ContactCache;
 use super::manifold::Contact;
-use super::pieces::NONE;
 use super::push::Push;
 use crate::parallel::Parallelism;
 use crate::rigid::{InverseMass, Twist};

@@ -5,10 +5,10 @@
 //! schemes (SHAKE, Ryckaert et al. 1977), this conserves the energy of a rotating body on a hinge. The remaining drift
 //! is removed from the positions alone. A distance with compliance is a spring, solved as in Macklin et al. 2016.
 
+use super::bounds::NONE;
 use super::manifold::entry;
-use super::pieces::NONE;
 use crate::math::Vector64;
-use crate::rigid::{Bodies, InverseMass, Pose, Twist};
+use crate::rigid::{InverseMass, Pose, Twist};
 
 /// The constraint of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -64,7 +64,7 @@ pub struct Joint {
 
 /// A joint with its state in the solver.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
-pub(super) struct Linked {
+pub(crate) struct Linked {
     pub joint: Joint,
     /// Impulse on the first body: a vector for a hinge, or the component along the line in x [kg m].
     pub impulse: Vector64,
@@ -94,32 +94,30 @@ impl Linked {
         (self.joint.body, self.joint.other.unwrap_or(NONE))
     }
 
-    /// Computes anchors and arms, with the bodies rotated by half of `displacements`.
-    fn place(&mut self, bodies: &Bodies, displacements: &[Twist]) {
-        let arm = |id: u32, anchor: Vector64, ahead: f64| {
-            let pose = if id == NONE { Pose::default() } else { bodies.poses[id as usize] };
-            let turned = pose.angle + ahead * entry(displacements, id).angular;
-            (pose.position, Vector64::from_angle(turned).rotate(anchor))
-        };
-        let ((a, b), joint) = (self.bodies(), &self.joint);
-        self.middle = (arm(a, joint.anchor, 0.5).1, arm(b, joint.other_anchor, 0.5).1);
-        let ((at_a, arm_a), (at_b, arm_b)) = (arm(a, joint.anchor, 0.0), arm(b, joint.other_anchor, 0.0));
-        self.arms = (arm_a, arm_b);
-        self.offset = (at_a + arm_a) - (at_b + arm_b);
+    /// Computes anchors and arms at these poses of the bodies.
+    fn place(&mut self, a: Pose, b: Pose) {
+        let arm = |pose: Pose, anchor: Vector64| Vector64::from_angle(pose.angle).rotate(anchor);
+        self.arms = (arm(a, self.joint.anchor), arm(b, self.joint.other_anchor));
+        self.middle = self.arms;
+        self.offset = (a.position + self.arms.0) - (b.position + self.arms.1);
     }
 
-    /// Prepares a substep and returns the pushes of the impulses kept from the last one.
-    pub fn prepare(&mut self, bodies: &Bodies, split: &[InverseMass], dt: f64, scale: f64) -> (Twist, Twist) {
-        self.place(bodies, &bodies.displacements);
+    /// Prepares a substep: the arms at its start, and at its middle with the bodies rotated by half of `displacements`.
+    pub fn prepare(&mut self, poses: &[Pose], displacements: &[Twist], split: &[InverseMass], dt: f64, scale: f64) {
         let (a, b) = self.bodies();
+        let (of_a, of_b) = (entry(poses, a), entry(poses, b));
+        self.place(of_a, of_b);
+        let half = |pose: Pose, body: u32| pose.angle + 0.5 * entry(displacements, body).angular;
+        let turned = |angle: f64, anchor: Vector64| Vector64::from_angle(angle).rotate(anchor);
+        self.middle = (turned(half(of_a, a), self.joint.anchor), turned(half(of_b, b), self.joint.other_anchor));
         (self.split, self.dt) = ((entry(split, a), entry(split, b)), dt);
         self.impulse *= scale;
         self.motor *= scale;
-        let vector = match self.joint.kind {
-            JointKind::Hinge { .. } => self.impulse,
-            JointKind::Distance { .. } => self.direction() * self.impulse.x,
-        };
-        self.pushes(vector, self.motor)
+    }
+
+    /// The pushes of the impulses of the last substep, or of this one so far.
+    pub fn kept_pushes(&self) -> (Twist, Twist) {
+        self.pushes(self.force(), self.motor)
     }
 
     fn direction(&self) -> Vector64 {
@@ -204,9 +202,16 @@ impl Linked {
         (a.linear + b.linear + at_a * a.angular + at_b * b.angular).max(f64::MIN_POSITIVE)
     }
 
-    /// Position-only pushes that remove half of the drift, after the poses have moved.
-    pub fn separate(&mut self, bodies: &Bodies) -> (Twist, Twist) {
-        self.place(bodies, &[]);
+    /// Position-only pushes that remove half of the drift. The poses have moved by `displacements`, and move on
+    /// to `motion`.
+    pub fn separate(&mut self, poses: &[Pose], displacements: &[Twist], motion: &[Twist]) -> (Twist, Twist) {
+        let (a, b) = self.bodies();
+        let pose = |id: u32| {
+            let (pose, was, is) = (entry(poses, id), entry(displacements, id), entry(motion, id));
+            let angle = pose.angle + is.angular - was.angular;
+            Pose { position: pose.position + is.linear - was.linear, angle }
+        };
+        self.place(pose(a), pose(b));
         match self.joint.kind {
             JointKind::Hinge { .. } => self.pushes(-self.solve_point(self.offset * 0.5), 0.0),
             JointKind::Distance { length, compliance, rule } => {
@@ -222,6 +227,11 @@ impl Linked {
 }
 
 impl Linked {
+    /// Whether a motor wants it to turn.
+    pub fn is_driven(&self) -> bool {
+        matches!(self.joint.kind, JointKind::Hinge { motor: Some(motor) } if motor.speed != 0.0 && motor.max_torque > 0.0)
+    }
+
     /// The impulse on the first body as a vector [kg m].
     pub fn force(&self) -> Vector64 {
         match self.joint.kind {

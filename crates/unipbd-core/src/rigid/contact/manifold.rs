@@ -6,25 +6,33 @@
 //! once or seldom in [`ContactCache`]: sweeps over large heaps are bound by memory.
 
 use super::Depenetration;
-use super::collide::Touch;
 use super::complementarity::{self, Coupling};
-use super::contact_cache::{ContactCache, Point};
+use super::contact_cache::{ContactCache, Point, Rebound};
+use super::frames::Frame;
 use super::push::Push;
+use super::touch::{Reference, Touch};
 use crate::math::Vector64;
 use crate::rigid::{InverseMass, Twist};
 
 /// Constants of a contact within a substep.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
-struct EffectiveMass {
+pub(super) struct EffectiveMass {
     /// Inverse effective mass along the normal, with the split masses [1/kg].
-    normal: Coupling,
+    pub normal: Coupling,
     /// Tangential response of each point to itself [1/kg].
-    tangent: [f64; 2],
+    pub tangent: [f64; 2],
     /// Responses of both bodies to moments [1/(kg m^2)].
-    turning: (f64, f64),
+    pub turning: (f64, f64),
+    /// Sum of the inverse masses [1/kg].
+    pub linear: f64,
     /// Coulomb coefficient: static if the sliding speed is low, else kinetic.
-    friction: f64,
+    pub friction: f64,
+    /// Way of moving surfaces in the substep, along the tangent [m].
+    pub belt: f64,
 }
+
+/// Rounds of normal and friction impulses of a new contact.
+const ROUNDS: usize = 8;
 
 /// One or two points of two bodies with a common normal.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
@@ -36,7 +44,7 @@ pub(crate) struct Contact {
     /// Unit normal, towards the first body.
     pub normal: Vector64,
     points: [Point; 2],
-    effective_mass: EffectiveMass,
+    pub(super) effective_mass: EffectiveMass,
     /// Rolling friction times the rolling radius [m].
     rolling_arm: f64,
     /// Impulse of the rolling resistance [kg m^2].
@@ -86,20 +94,55 @@ impl Contact {
         self.normal.dot(normal) > 0.9999
     }
 
-    /// Adds a point without impulse; `centers` are those of mass.
-    pub(super) fn add(&mut self, touch: &Touch, centers: (Vector64, Vector64)) {
-        let (arm_a, arm_b) = (touch.on_a - centers.0, touch.on_b - centers.1);
-        let (normal, tangent) = (self.normal, self.tangent());
-        self.points[self.count as usize] = Point {
-            gap: touch.gap,
-            normal_impulse: 0.0,
-            tangent_impulse: 0.0,
-            normal_a: arm_a.perp_dot(normal),
-            normal_b: arm_b.perp_dot(normal),
-            tangent_a: arm_a.perp_dot(tangent),
-            tangent_b: arm_b.perp_dot(tangent),
-        };
+    /// Adds a point without impulse.
+    pub(super) fn add(&mut self, touch: &Touch, cache: &mut ContactCache, frames: [&Frame; 2]) {
+        let k = self.count as usize;
+        self.points[k] = Point { gap: touch.gap(), ..Point::default() };
+        cache.anchors[k] = (frames[0].local(touch.on_a), frames[1].local(touch.on_b));
+        cache.features[k] = touch.feature;
         self.count += 1;
+    }
+
+    /// Measures normal, gaps and arms at the poses of a substep: the anchors are fixed in the bodies.
+    pub(super) fn measure(&mut self, cache: &ContactCache, [a, b]: [&Frame; 2]) {
+        let [radius_a, radius_b] = cache.radii;
+        let arms = |k: usize| {
+            let (on_a, on_b) = cache.anchors[k];
+            (a.rotation.rotate(on_a), b.rotation.rotate(on_b))
+        };
+        let between = a.position - b.position;
+        self.normal = match cache.reference {
+            Reference::First => a.rotation.rotate(cache.normal),
+            Reference::Second => b.rotation.rotate(cache.normal),
+            Reference::Points => {
+                let (on_a, on_b) = arms(0);
+                (between + on_a - on_b).try_normalize().unwrap_or(self.normal)
+            }
+        };
+        let (normal, tangent) = (self.normal, self.tangent());
+        for k in 0..self.count as usize {
+            let (on_a, on_b) = arms(k);
+            let point = &mut self.points[k];
+            point.gap = (between + on_a - on_b).dot(normal) - radius_a - radius_b;
+            // The point on the face is the foot of the other point, not the anchor: bodies slide.
+            let (arm_a, arm_b) = match cache.reference {
+                Reference::Second => (on_a - normal * radius_a, between + on_a - normal * (radius_a + point.gap)),
+                Reference::First => (on_b - between + normal * (radius_b + point.gap), on_b + normal * radius_b),
+                Reference::Points => (on_a - normal * radius_a, on_b + normal * radius_b),
+            };
+            (point.normal_a, point.normal_b) = (arm_a.perp_dot(normal), arm_b.perp_dot(normal));
+            (point.tangent_a, point.tangent_b) = (arm_a.perp_dot(tangent), arm_b.perp_dot(tangent));
+        }
+    }
+
+    /// Scales the impulses of the last substep to this one; a point that rebounded starts without.
+    pub fn age(&mut self, cache: &mut ContactCache, kept: f64) {
+        self.rolling_impulse *= if cache.rebounded() { 0.0 } else { kept };
+        for (point, rebound) in self.points_mut().iter_mut().zip(&mut cache.rebound) {
+            let old = *point;
+            point.keep(&old, if *rebound == Rebound::default() { kept } else { 0.0 });
+            *rebound = Rebound::default();
+        }
     }
 
     pub fn points(&self) -> &[Point] {
@@ -141,14 +184,15 @@ impl Contact {
     }
 
     /// Stores the velocities at the start of a substep. A contact that slides slower than `slow` [m/s] sticks.
-    pub fn note_velocities(&mut self, cache: &mut ContactCache, velocities: &[Twist], slow: f64) {
+    pub fn note_velocities(&mut self, cache: &mut ContactCache, velocities: &[Twist], slow: f64, dt: f64) {
         let (a, b) = (entry(velocities, self.a), entry(velocities, self.b));
         let mut sliding = 0.0f64;
         for (k, point) in self.points().iter().enumerate() {
             cache.approach[k] = self.opening(point, &a, &b);
-            sliding = sliding.max(self.slide(point, &a, &b).abs());
+            sliding = sliding.max((self.slide(point, &a, &b) - cache.surface.speed).abs());
         }
         let surface = &cache.surface;
+        self.effective_mass.belt = surface.speed * dt;
         self.effective_mass.friction = if sliding < slow { surface.static_friction } else { surface.kinetic_friction };
     }
 
@@ -166,7 +210,7 @@ impl Contact {
             (normal.second, normal.off, tangent[1]) = (along_normal(q, q), along_normal(p, q), along_tangent(q));
         }
         self.effective_mass =
-            EffectiveMass { normal, tangent, turning: (a.angular, b.angular), friction: self.effective_mass.friction };
+            EffectiveMass { normal, tangent, turning: (a.angular, b.angular), linear, ..self.effective_mass };
     }
 
     /// The push of the impulses kept from the last substep.
@@ -179,24 +223,51 @@ impl Contact {
         push
     }
 
+    /// The push of all impulses of a substep of length `dt` [s], those of a rebound included [N s].
+    pub fn total_push(&self, cache: &ContactCache, dt: f64) -> Push {
+        let moment = self.rolling_impulse / dt;
+        let mut push = Push { linear: Vector64::ZERO, angular_a: moment, angular_b: moment };
+        for (point, rebound) in self.points().iter().zip(&cache.rebound) {
+            let (normal, tangent) = (point.normal_impulse / dt, point.tangent_impulse / dt);
+            self.add_push(&mut push, point, normal + rebound.normal, tangent + rebound.tangent);
+        }
+        push
+    }
+
     pub fn add_push(&self, push: &mut Push, point: &Point, normal: f64, tangent: f64) {
         push.linear += self.normal * normal + self.tangent() * tangent;
         push.angular_a += point.normal_a * normal + point.tangent_a * tangent;
         push.angular_b += point.normal_b * normal + point.tangent_b * tangent;
     }
 
-    fn opening(&self, point: &Point, a: &Twist, b: &Twist) -> f64 {
+    pub(super) fn opening(&self, point: &Point, a: &Twist, b: &Twist) -> f64 {
         (a.linear - b.linear).dot(self.normal) + point.normal_a * a.angular - point.normal_b * b.angular
     }
 
-    fn slide(&self, point: &Point, a: &Twist, b: &Twist) -> f64 {
+    pub(super) fn slide(&self, point: &Point, a: &Twist, b: &Twist) -> f64 {
         (a.linear - b.linear).dot(self.tangent()) + point.tangent_a * a.angular - point.tangent_b * b.angular
     }
 
     /// One iteration: no approach beyond the gap, friction inside Coulomb's cone, rolling resistance.
     pub fn solve(&mut self, displacements: &[Twist]) -> Push {
+        let mut motion = (entry(displacements, self.a), entry(displacements, self.b));
+        // Friction of a tall body turns it: a contact without impulses to start from needs a few rounds for both.
+        let is_new = self.count == 2 && !self.is_pressed() && self.effective_mass.friction > 0.0;
+        let mut push = Push::default();
+        for _ in 0..if is_new { ROUNDS } else { 1 } {
+            let step = self.solve_once(motion);
+            push += step;
+            let (turns_a, turns_b) = self.effective_mass.turning;
+            motion.0.linear += step.linear * self.effective_mass.linear;
+            motion.0.angular += step.angular_a * turns_a;
+            motion.1.angular -= step.angular_b * turns_b;
+        }
+        push
+    }
+
+    fn solve_once(&mut self, motion: (Twist, Twist)) -> Push {
         let old = self.points.map(|point| point.normal_impulse);
-        let Some(pressed) = self.press(displacements, old) else { return Push::default() };
+        let Some(pressed) = self.press(motion, old) else { return Push::default() };
         let mut push = Push::default();
         for (k, old) in old.into_iter().enumerate().take(self.count as usize) {
             let (point, normal) = (self.points[k], pressed.normal[k]);
@@ -211,8 +282,7 @@ impl Contact {
 
     /// The normal impulses that leave no approach beyond the gap, in place of the `old` ones; `None` if
     /// there were none and none are needed.
-    pub fn press(&self, displacements: &[Twist], old: [f64; 2]) -> Option<Pressed> {
-        let (a, b) = (entry(displacements, self.a), entry(displacements, self.b));
+    pub fn press(&self, (a, b): (Twist, Twist), old: [f64; 2]) -> Option<Pressed> {
         let mut excess = [0.0; 2];
         for (excess, point) in excess.iter_mut().zip(self.points()) {
             *excess = self.opening(point, &a, &b) + point.gap.max(0.0);
@@ -237,7 +307,8 @@ impl Contact {
         let turned = point.tangent_a * pressed.turned.0 + point.tangent_b * pressed.turned.1;
         // Both points have the same tangential motion: each takes the share of its normal load.
         let share = pressed.normal[k] / total;
-        (self.slide(point, &pressed.a, &pressed.b) + turned) * share / self.effective_mass.tangent[k]
+        (self.slide(point, &pressed.a, &pressed.b) - self.effective_mass.belt + turned) * share
+            / self.effective_mass.tangent[k]
     }
 
     /// Rolling resistance, after the other impulses of the contact have rotated the bodies.
@@ -254,48 +325,24 @@ impl Contact {
         self.rolling_impulse = moment;
     }
 
-    fn point_rebounds(&self, k: usize, cache: &ContactCache, slowest: f64) -> bool {
-        self.points[k].normal_impulse > 0.0 && cache.approach[k] < -slowest
-    }
-
-    /// Whether the contact rebounds: its impact speed exceeded `slowest` [m/s].
-    pub fn rebounds(&self, cache: &ContactCache, slowest: f64) -> bool {
-        cache.surface.restitution > 0.0 && (0..2).any(|k| self.point_rebounds(k, cache, slowest))
-    }
-
-    /// One velocity iteration towards v_n = -e v_before; the total impulse of the substep stays repulsive.
-    pub fn rebound(&self, cache: &mut ContactCache, velocities: &[Twist], dt: f64, slowest: f64) -> Push {
-        let (a, b) = (entry(velocities, self.a), entry(velocities, self.b));
-        let acts = [0, 1].map(|k| self.point_rebounds(k, cache, slowest));
-        let excess =
-            [0, 1].map(|k| self.opening(&self.points[k], &a, &b) + cache.surface.restitution * cache.approach[k]);
-        let Coupling { first, second, off } = self.effective_mass.normal;
-        let keep = |acts: bool, gain: f64| if acts { gain } else { 0.0 };
-        let coupling = Coupling { first: keep(acts[0], first), second: keep(acts[1], second), off };
-        let (old, lower) = (cache.rebound, self.points.map(|point| -point.normal_impulse / dt));
-        let total = complementarity::solve(&coupling, excess, old, lower);
-        let mut push = Push::default();
-        for (k, point) in self.points().iter().enumerate() {
-            self.add_push(&mut push, point, total[k] - old[k], 0.0);
-            cache.rebound[k] = total[k];
-        }
-        push
-    }
-
     /// The push that removes overlap from the positions; `size` is the size of the smaller body [m].
-    pub fn separate(&self, displacements: &[Twist], how: &Depenetration, size: f64, dt: f64) -> Push {
+    pub fn separate(
+        &self,
+        cache: &ContactCache,
+        displacements: &[Twist],
+        how: &Depenetration,
+        size: f64,
+        dt: f64,
+    ) -> Push {
         let (a, b) = (entry(displacements, self.a), entry(displacements, self.b));
-        let mut overlap = [0.0; 2];
-        for (overlap, point) in overlap.iter_mut().zip(self.points()) {
-            *overlap = -(point.gap + self.opening(point, &a, &b)) - how.slop * size;
+        let mut lacking = [0.0; 2];
+        for (k, point) in self.points().iter().enumerate() {
+            let (gap, flown) = (point.gap + self.opening(point, &a, &b), cache.rebound[k].flown);
+            lacking[k] = if flown > 0.0 { (gap - flown).min(0.0) } else { how.lacking(-gap, size, dt) };
         }
-        if overlap[0] <= 0.0 && overlap[1] <= 0.0 {
+        if lacking == [0.0; 2] {
             return Push::default();
         }
-        let lacking = overlap.map(|overlap| {
-            let deep = (overlap - how.deep * size).max(0.0);
-            -(how.fraction * overlap + (how.deep_fraction - how.fraction) * deep).clamp(0.0, how.speed * dt)
-        });
         let normal = complementarity::solve(&self.effective_mass.normal, lacking, [0.0; 2], [0.0; 2]);
         let mut push = Push::default();
         for (point, normal) in self.points().iter().zip(normal) {

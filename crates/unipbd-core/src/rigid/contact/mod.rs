@@ -1,11 +1,12 @@
-//! Contacts and joints of rigid bodies: split Jacobi on the displacements of a substep.
+//! Contacts and joints of rigid bodies, solved on the displacements of a substep.
 //!
 //! Contacts are constraints on the displacement u of a substep, warm started with the impulses of the
-//! last one and solved by Jacobi sweeps in which a body's mass is split among its contacts (Tonge et al.
-//! 2012, "Mass splitting for jitter-free parallel rigid body simulation"). Overlap never becomes
-//! velocity: a separate pass removes it from the positions. A substep calls, in this order:
+//! last one and solved by Gauss-Seidel sweeps, forwards and backwards in turn; or by Jacobi sweeps in which a body's
+//! mass is split among its contacts (Tonge et al. 2012, "Mass splitting for jitter-free parallel rigid body
+//! simulation"). Overlap never becomes velocity: a separate pass removes it from the positions. A substep calls, in
+//! this order:
 //!
-//! 1. [`Contacts::begin_substep`] finds the contacts,
+//! 1. [`Contacts::begin_substep`] finds the contacts, once per frame unless a body leaves its prediction,
 //! 2. [`Bodies::predict`] and [`Contacts::warm_start`],
 //! 3. [`Contacts::iterate`], before and again after the fluid has pushed the bodies,
 //! 4. [`Bodies::integrate`],
@@ -13,11 +14,15 @@
 //!
 //! a frame ends with [`Contacts::finish_frame`] and [`Bodies::finish_frame`].
 
+mod bounds;
 mod broad;
 mod collide;
 mod complementarity;
 mod contact_cache;
 mod contact_set;
+mod exposure;
+mod finish;
+mod frames;
 mod islands;
 mod jacobi;
 mod joint;
@@ -27,39 +32,46 @@ mod pair_contacts;
 mod pairs;
 mod pieces;
 mod push;
+mod reach;
+mod rebound;
 mod saved;
 mod settings;
 mod solver;
+mod sweep;
+mod touch;
 mod union_find;
 
 pub use islands::SleepSettings;
 pub use joint::{DistanceRule, Joint, JointKind, Motor};
 pub use settings::{ContactSettings, Depenetration};
 
-pub(crate) use contact_set::Rows;
-pub(crate) use jacobi::Jacobi;
+pub(crate) use joint::Linked;
 pub(crate) use manifold::{Contact, entry};
 pub(crate) use push::Push;
 pub(crate) use solver::{ContactSolver, Split};
+pub(crate) use sweep::Sweep;
 pub(crate) use union_find::UnionFind;
 
 use crate::math::Vector64;
 use crate::parallel::Parallelism;
 use crate::rigid::Wall;
 use crate::rigid::{Bodies, InverseMass, Twist};
+use crate::scene::ContactMethod;
+use bounds::NONE;
 use contact_cache::ContactCache;
 use contact_set::StepContext;
 use islands::Islands;
-use joint::Linked;
+use jacobi::Jacobi;
 use narrow_phase::NarrowPhase;
-use pieces::NONE;
+use solver::InTurn;
 use std::sync::Arc;
+use sweep::Order;
 
 /// The contacts and joints of all bodies: solver state that lasts from substep to substep.
 #[derive(Clone, serde::Serialize, serde::Deserialize)]
 pub struct Contacts {
     settings: ContactSettings,
-    #[serde(skip, default = "split")]
+    #[serde(skip, default = "in_turn")]
     solver: Arc<dyn ContactSolver>,
     narrow_phase: NarrowPhase,
     joints: Vec<Linked>,
@@ -72,6 +84,8 @@ pub struct Contacts {
     corrections: Vec<Twist>,
     wall_impulses: Vec<Vector64>,
     wall_forces: Vec<Vector64>,
+    /// Whether the next iteration goes through the contacts from the last to the first.
+    backward: bool,
     dt: f64,
     warm_factor: f64,
     gravity: f64,
@@ -101,8 +115,11 @@ impl Contacts {
     /// An empty set of contacts between bodies and these walls.
     pub fn new(walls: &[Wall], settings: ContactSettings) -> Contacts {
         Contacts {
+            solver: match settings.method {
+                ContactMethod::GaussSeidel => in_turn(),
+                ContactMethod::SplitJacobi => Arc::new(Split),
+            },
             settings,
-            solver: split(),
             narrow_phase: NarrowPhase::new(walls),
             joints: Vec::new(),
             islands: Islands::default(),
@@ -113,6 +130,7 @@ impl Contacts {
             corrections: Vec::new(),
             wall_impulses: vec![Vector64::ZERO; walls.len()],
             wall_forces: vec![Vector64::ZERO; walls.len()],
+            backward: false,
             dt: 0.0,
             warm_factor: 1.0,
             gravity: 0.0,
@@ -131,10 +149,10 @@ impl Contacts {
         self.jacobi.parallelism = parallelism;
     }
 
-    /// Adds a joint; the bodies it links no longer collide with each other. Returns its index.
-    pub fn add_joint(&mut self, joint: Joint) -> usize {
+    /// Adds a joint and returns its index. Without `collide`, the bodies it links no longer collide with each other.
+    pub fn add_joint(&mut self, joint: Joint, collide: bool) -> usize {
         self.joints.push(Linked::new(joint));
-        if let Some(other) = joint.other {
+        if let Some(other) = joint.other.filter(|_| !collide) {
             self.narrow_phase.exclude(joint.body, other);
         }
         self.joints.len() - 1
@@ -155,32 +173,39 @@ impl Contacts {
         self.up = -gravity.normalize_or_zero();
         self.islands.resize(bodies.len());
         self.islands.wake_pushed(bodies);
-        let kept = self.solver.kept() * self.warm_factor;
-        let moment = StepContext { dt, gravity: self.gravity, kept, slow: 2.0 * self.gravity * dt };
+        self.narrow_phase.age(self.solver.kept() * self.warm_factor);
+        let moment = StepContext { dt, gravity, slow: 2.0 * self.gravity * dt };
         loop {
             self.narrow_phase.find(bodies, &moment);
-            if !self.islands.wake_touched(bodies, self.narrow_phase.candidates(), &self.joints, dt) {
+            if !self.islands.wake_touched(bodies, self.narrow_phase.contacts(), &self.joints, dt) {
                 break;
             }
         }
-        self.narrow_phase.adopt();
+        self.narrow_phase.pass(dt);
     }
 
-    /// Splits the mass of each body among its contacts and applies the impulses kept from the last substep.
+    /// Applies the impulses kept from the last substep.
     pub fn warm_start(&mut self, bodies: &mut Bodies) {
-        self.split_masses(bodies);
-        self.jacobi.index(self.narrow_phase.contacts(), bodies.len());
-        let split = &self.split;
-        self.jacobi.sweep(self.narrow_phase.rows(), bodies.len(), |contact, _| {
-            contact.prepare(split);
-            contact.kept_push()
-        });
-        for linked in &mut self.joints {
-            let (a, b) = linked.bodies();
-            let pushes = linked.prepare(bodies, &self.split, self.dt, self.warm_factor);
-            add_pair(&mut self.jacobi.sums, (a, b), pushes);
+        self.solver.scale_masses(self.narrow_phase.contacts(), bodies, self.up, &mut self.scaled);
+        let at_once = self.solver.at_once();
+        if at_once {
+            self.split_masses(bodies);
+            self.jacobi.index(self.narrow_phase.contacts(), bodies.len());
         }
-        self.apply_displacements(bodies);
+        let masses = seen(&self.scaled, &bodies.inverse_masses);
+        let split = if at_once { &self.split[..] } else { masses };
+        for linked in &mut self.joints {
+            linked.prepare(&bodies.poses, &bodies.displacements, split, self.dt, self.warm_factor);
+        }
+        let order = if at_once { Order::AtOnce(&mut self.jacobi) } else { Order::InTurn };
+        let rows = self.narrow_phase.rows();
+        Sweep { order, rows, joints: &mut self.joints, masses, motion: &mut bodies.displacements }.run(
+            |contact, _, _| {
+                contact.prepare(split);
+                contact.kept_push()
+            },
+            |linked, _| linked.kept_pushes(),
+        );
     }
 
     /// N = max(1, n/relaxation) for the n contacts and joints that act on a body in this substep.
@@ -204,7 +229,6 @@ impl Contacts {
             count(b);
         }
         let relaxation = self.settings.relaxation;
-        self.solver.scale_masses(self.narrow_phase.contacts(), bodies, self.up, &mut self.scaled);
         self.split.clear();
         self.split.extend(seen(&self.scaled, &bodies.inverse_masses).iter().zip(&self.counts).map(
             |(response, &count)| {
@@ -214,96 +238,50 @@ impl Contacts {
         ));
     }
 
-    /// Jacobi iterations of all contacts and joints on the displacements; one iteration by default.
+    /// Iterations of all contacts and joints on the displacements; one iteration by default.
     pub fn iterate(&mut self, bodies: &mut Bodies) {
         for _ in 0..self.settings.iterations {
-            self.sweep(bodies);
-        }
-    }
-
-    fn sweep(&mut self, bodies: &mut Bodies) {
-        self.solver.sweep(&mut self.jacobi, self.narrow_phase.rows(), &bodies.displacements);
-        for linked in self.joints.iter_mut().filter(|linked| is_movable(linked, bodies)) {
-            let pushes = linked.solve(&bodies.displacements);
-            add_pair(&mut self.jacobi.sums, linked.bodies(), pushes);
-        }
-        self.apply_displacements(bodies);
-    }
-
-    fn apply_displacements(&mut self, bodies: &mut Bodies) {
-        self.jacobi.apply(seen(&self.scaled, &bodies.inverse_masses), &mut bodies.displacements);
-        let per_time = 1.0 / self.dt;
-        for (load, push) in bodies.contact_loads.iter_mut().zip(&self.jacobi.sums) {
-            *load += push.scaled(per_time);
-        }
-    }
-
-    /// Applies restitution to contacts with an impact speed above that of gravity in two substeps.
-    pub fn restitute(&mut self, bodies: &mut Bodies) {
-        let (dt, slowest) = (self.dt, 2.0 * self.gravity * self.dt);
-        let mut rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches());
-        if rows.any(|(contact, cache)| contact.rebounds(cache, slowest)) {
-            for _ in 0..self.settings.restitution_iterations {
-                let velocities = &bodies.velocities;
-                self.jacobi.sweep(self.narrow_phase.rows(), bodies.len(), |contact, cache| {
-                    if contact.rebounds(cache, slowest) {
-                        contact.rebound(cache, velocities, dt, slowest)
-                    } else {
-                        Default::default()
-                    }
-                });
-                self.jacobi.apply(seen(&self.scaled, &bodies.inverse_masses), &mut bodies.velocities);
-                for (load, push) in bodies.contact_loads.iter_mut().zip(&self.jacobi.sums) {
-                    *load += *push;
-                }
-            }
-        }
-        self.load_walls();
-    }
-
-    /// Adds the impulses of the substep to the walls they act on.
-    fn load_walls(&mut self) {
-        let rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches());
-        for (contact, cache) in rows.filter(|(_, cache)| cache.wall != NONE) {
-            for (point, rebound) in contact.points().iter().zip(cache.rebound) {
-                let normal = contact.normal * (point.normal_impulse / self.dt + rebound);
-                let tangent = contact.normal.perp() * (point.tangent_impulse / self.dt);
-                self.wall_impulses[cache.wall as usize] -= normal + tangent;
-            }
-        }
-    }
-
-    /// Removes overlap from the positions, without changing any velocity.
-    pub fn depenetrate(&mut self, bodies: &mut Bodies) {
-        let (how, dt) = (&self.settings.depenetration, self.dt);
-        let (displacements, sizes) = (&bodies.displacements, &bodies.sizes);
-        self.jacobi.sweep(self.narrow_phase.rows(), bodies.len(), |contact, _| {
-            let size = sizes[contact.a as usize];
-            let size = if contact.b == NONE { size } else { size.min(sizes[contact.b as usize]) };
-            contact.separate(displacements, how, size, dt)
-        });
-        for linked in self.joints.iter_mut().filter(|linked| is_movable(linked, bodies)) {
-            let pushes = linked.separate(bodies);
-            add_pair(&mut self.jacobi.sums, linked.bodies(), pushes);
-        }
-        self.corrections.clear();
-        self.corrections.resize(bodies.len(), Twist::ZERO);
-        self.jacobi.apply(seen(&self.scaled, &bodies.inverse_masses), &mut self.corrections);
-        for (pose, moved) in bodies.poses.iter_mut().zip(&self.corrections) {
-            pose.position += moved.linear;
-            pose.angle += moved.angular;
+            let at_once = self.solver.at_once();
+            let backward = self.backward;
+            self.backward = !backward;
+            let order = match (at_once, backward) {
+                (true, _) => Order::AtOnce(&mut self.jacobi),
+                (false, false) => Order::InTurn,
+                (false, true) => Order::Backward,
+            };
+            let (rows, joints) = (self.narrow_phase.rows(), &mut self.joints[..]);
+            let masses = seen(&self.scaled, &bodies.inverse_masses);
+            self.solver.sweep(Sweep { order, rows, joints, masses, motion: &mut bodies.displacements });
         }
     }
 
     /// Ends a frame of length `frame_time` [s]: mean forces on walls, and sleep. Call it before
     /// [`Bodies::finish_frame`].
     pub fn finish_frame(&mut self, bodies: &mut Bodies, frame_time: f64) {
+        // Sleeping bodies load their supports as they did when they fell asleep.
+        for (contact, cache) in self.narrow_phase.frozen() {
+            let push = contact.total_push(cache, 1.0);
+            if cache.wall != NONE {
+                self.wall_impulses[cache.wall as usize] -= push.linear * frame_time;
+            }
+            for (body, load) in [(contact.a, push.on_a()), (contact.b, push.on_b().scaled(-1.0))] {
+                if body != NONE && !bodies.is_dynamic(body as usize) {
+                    bodies.contact_loads[body as usize] += load.scaled(frame_time);
+                }
+            }
+        }
         for (force, impulse) in self.wall_forces.iter_mut().zip(&mut self.wall_impulses) {
             *force = std::mem::take(impulse) / frame_time;
         }
+        self.narrow_phase.begin_frame(frame_time);
         if let Some(settings) = &self.settings.sleep {
-            let fell_asleep =
-                self.islands.sleep(bodies, self.narrow_phase.contacts(), &self.joints, settings, frame_time);
+            let fell_asleep = self.islands.sleep(
+                bodies,
+                self.narrow_phase.contacts(),
+                &self.joints,
+                settings,
+                (frame_time, self.gravity),
+            );
             if fell_asleep {
                 self.narrow_phase.freeze(bodies, self.dt);
             }
@@ -311,7 +289,7 @@ impl Contacts {
     }
 
     /// Wakes a body with its island.
-    pub(crate) fn wake(&mut self, bodies: &mut Bodies, body: u32) {
+    pub fn wake(&mut self, bodies: &mut Bodies, body: u32) {
         self.islands.resize(bodies.len());
         self.islands.wake_island(bodies, body as usize);
     }
@@ -323,6 +301,21 @@ impl Contacts {
             self.islands.put_to_sleep(bodies, falling_asleep, self.narrow_phase.contacts(), &self.joints);
             self.narrow_phase.freeze(bodies, self.dt);
         }
+    }
+
+    /// Pairs of bodies that act on each other through contacts or joints.
+    pub(crate) fn linked(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
+        self.pressed().chain(self.joints.iter().map(Linked::bodies)).filter(|&(_, b)| b != NONE)
+    }
+
+    /// The bodies of the contacts that carry a load.
+    pub(crate) fn pressed(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
+        self.narrow_phase.contacts().iter().filter(|contact| contact.is_pressed()).map(|contact| (contact.a, contact.b))
+    }
+
+    /// Whether no substep has been taken.
+    pub(crate) fn is_fresh(&self) -> bool {
+        self.dt == 0.0
     }
 
     /// Force of the bodies on each wall over the last frame, mean [N]; in the order of the walls.
@@ -341,8 +334,8 @@ impl Contacts {
                 wall: index(cache.wall),
                 normal: contact.normal,
                 gap: point.gap,
-                normal_force: point.normal_impulse / (self.dt * self.dt) + cache.rebound[k] / self.dt,
-                friction_force: point.tangent_impulse / (self.dt * self.dt),
+                normal_force: point.normal_impulse / (self.dt * self.dt) + cache.rebound[k].normal / self.dt,
+                friction_force: point.tangent_impulse / (self.dt * self.dt) + cache.rebound[k].tangent / self.dt,
             }
         };
         let rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches());
@@ -356,21 +349,8 @@ impl Contacts {
     }
 }
 
-fn split() -> Arc<dyn ContactSolver> {
-    Arc::new(Split)
-}
-
-fn is_movable(linked: &Linked, bodies: &Bodies) -> bool {
-    let (a, b) = linked.bodies();
-    let movable = |id: u32| entry(&bodies.inverse_masses, id) != InverseMass::default();
-    movable(a) || movable(b)
-}
-
-fn add_pair(sums: &mut [Twist], (a, b): (u32, u32), (on_a, on_b): (Twist, Twist)) {
-    sums[a as usize] += on_a;
-    if b != NONE {
-        sums[b as usize] -= on_b;
-    }
+fn in_turn() -> Arc<dyn ContactSolver> {
+    Arc::new(InTurn)
 }
 
 /// The inverse masses for contacts: the scaled ones, if there are any.

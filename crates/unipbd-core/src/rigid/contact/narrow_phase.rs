@@ -1,14 +1,16 @@
-//! Finds the contacts of each substep and transfers the impulses of the last substep.
+//! Finds contacts and transfers the impulses of the last substep.
 //!
-//! Contact features (vertex and face) are searched again only if the pieces of a pair have moved. Before that
-//! the same features are measured again, which is exact. Discs are always measured.
+//! Contacts are searched once per frame, and within a frame again where a body leaves its prediction. In each substep
+//! their gaps and arms are measured at the poses of the bodies.
 
 use super::contact_cache::ContactCache;
 use super::contact_set::{ContactSet, Rows, StepContext};
+use super::frames::Frames;
 use super::manifold::Contact;
 use super::pair_contacts::PairContacts;
 use super::pairs::{Pairs, Span};
 use super::pieces::Pieces;
+use super::reach::Reach;
 use crate::parallel::Parallelism;
 use crate::rigid::Bodies;
 use crate::rigid::Wall;
@@ -23,8 +25,12 @@ const PARALLEL_FROM: usize = 2048;
 pub(super) struct NarrowPhase {
     pieces: Pieces,
     pairs: Pairs,
+    reach: Reach,
+    #[serde(skip)]
+    frames: Frames,
     found: ContactSet,
-    /// Contacts found for the next substep.
+    /// Buffer of the search.
+    #[serde(skip)]
     coming: ContactSet,
     /// Contacts between sleeping bodies, kept until they wake: they store forces in place of impulses.
     frozen: ContactSet,
@@ -57,7 +63,7 @@ impl NarrowPhase {
     pub fn at_saved(&self, saved: NarrowPhase, bodies: &Bodies) -> Option<NarrowPhase> {
         let pieces = self.pieces.at_saved(&saved.pieces, bodies)?;
         let mut pairs = self.pairs.at_saved(saved.pairs, &pieces, bodies)?;
-        let sound = [&saved.found, &saved.frozen].into_iter().all(|set| set.is_sound(&pieces, &pairs.all));
+        let sound = [&saved.found, &saved.frozen].into_iter().all(|set| set.is_sound(&pairs.all));
         if !sound {
             return None;
         }
@@ -82,27 +88,49 @@ impl NarrowPhase {
         self.pairs.exclude(a, b);
     }
 
-    /// Finds all contacts that can act in a substep, with the impulses of the last substep. They are
-    /// [`NarrowPhase::candidates`] until they are adopted.
+    /// Begins a frame of this length [s].
+    pub fn begin_frame(&mut self, frame: f64) {
+        self.reach.begin_frame(frame);
+    }
+
+    /// Scales the impulses of the last substep to this one.
+    pub fn age(&mut self, kept: f64) {
+        let parallelism = self.parallelism;
+        each(self.rows(), parallelism, |contact, cache| contact.age(cache, kept));
+    }
+
+    /// Searches the contacts of the bodies that need it, with the impulses of the last substep, and measures all.
     pub fn find(&mut self, bodies: &Bodies, moment: &StepContext) {
         let added = self.pieces.append_bodies(bodies);
         self.pairs.renumber(&self.pieces, added);
-        self.pieces.update(bodies);
-        self.pairs.update(&self.pieces, bodies, moment.dt, moment.gravity);
-        self.collide(bodies, moment);
+        self.frames.update(bodies, moment.gravity);
+        let gravity = moment.gravity.length();
+        let marked = self.reach.mark(bodies, moment.dt, gravity);
+        if self.pairs.note_woken(bodies, &mut self.reach) | marked {
+            self.pieces.update(bodies, &self.frames);
+            self.pairs.update(&self.pieces, bodies, &mut self.reach, gravity);
+            self.collide(moment.dt);
+            self.adopt();
+        }
+        let frames = std::mem::take(&mut self.frames);
+        let parallelism = self.parallelism;
+        each(self.rows(), parallelism, |contact, cache| {
+            let of = [frames.of(contact.a), frames.of(contact.b)];
+            contact.measure(cache, of);
+            cache.pull = (of[0].pull - of[1].pull).dot(contact.normal);
+            contact.note_velocities(cache, &bodies.velocities, moment.slow, moment.dt);
+        });
+        self.frames = frames;
     }
 
-    /// The contacts found by the search.
-    pub fn candidates(&self) -> &[Contact] {
-        &self.coming.contacts
+    /// Ends a substep of this length [s].
+    pub fn pass(&mut self, dt: f64) {
+        self.reach.pass(dt);
     }
 
     /// Ends the search: the contacts found replace the current ones.
-    pub fn adopt(&mut self) {
+    fn adopt(&mut self) {
         std::mem::swap(&mut self.found, &mut self.coming);
-        for (pair, sought) in self.found.renewed.drain(..) {
-            self.pairs.sought[pair as usize] = sought;
-        }
         for active in &self.pairs.active {
             self.pairs.spans[active.index as usize] = Span::default();
         }
@@ -113,6 +141,12 @@ impl NarrowPhase {
             }
             span.count += 1;
         }
+    }
+
+    /// The contacts of sleeping pairs: they store forces in place of impulses.
+    pub fn frozen(&self) -> impl Iterator<Item = (&Contact, &ContactCache)> {
+        let spans = self.pairs.spans.iter().filter(|span| span.frozen).map(Span::range);
+        spans.flatten().map(|row| (&self.frozen.contacts[row], &self.frozen.caches[row]))
     }
 
     /// Stores the contacts of sleeping pairs, with forces in place of impulses.
@@ -136,21 +170,31 @@ impl NarrowPhase {
     }
 
     /// The narrow phase over all active pairs; contacts come in the order of the pairs.
-    fn collide(&mut self, bodies: &Bodies, moment: &StepContext) {
+    fn collide(&mut self, dt: f64) {
         let (mut coming, mut tasks) = (std::mem::take(&mut self.coming), std::mem::take(&mut self.tasks));
         coming.clear();
         let (pieces, pairs, last, frozen) = (&self.pieces, &self.pairs, &self.found, &self.frozen);
-        let search = PairContacts { pieces, pairs, bodies, moment, last, frozen };
+        let search = PairContacts { pieces, pairs, reach: &self.reach, frames: &self.frames, dt, last, frozen };
         let active = &pairs.active;
         if active.len() < PARALLEL_FROM || self.parallelism == Parallelism::Serial {
-            active.iter().for_each(|pair| search.pair(pair.index, &mut coming));
+            active.iter().for_each(|pair| search.pair(pair, &mut coming));
         } else {
             tasks.resize_with(tasks.len().max(active.len().div_ceil(CHUNK)), ContactSet::default);
             tasks.par_iter_mut().zip(active.par_chunks(CHUNK)).for_each(|(task, pairs)| {
-                pairs.iter().for_each(|pair| search.pair(pair.index, task));
+                pairs.iter().for_each(|pair| search.pair(pair, task));
             });
             tasks.iter_mut().for_each(|task| coming.append(task));
         }
         (self.tasks, self.coming) = (tasks, coming);
+    }
+}
+
+/// Applies a rule to each contact on its own.
+fn each((contacts, caches): Rows<'_>, parallelism: Parallelism, rule: impl Fn(&mut Contact, &mut ContactCache) + Sync) {
+    if contacts.len() < PARALLEL_FROM || parallelism == Parallelism::Serial {
+        contacts.iter_mut().zip(caches).for_each(|(contact, cache)| rule(contact, cache));
+    } else {
+        let rows = contacts.par_chunks_mut(CHUNK).zip(caches.par_chunks_mut(CHUNK));
+        rows.for_each(|(contacts, caches)| contacts.iter_mut().zip(caches).for_each(|(c, cache)| rule(c, cache)));
     }
 }

@@ -1,46 +1,12 @@
 //! The convex pieces of all walls and bodies in world coordinates, as flat columns.
 
+use super::bounds::{Bounds, HIDDEN, NONE};
+use super::exposure::{self, Solid};
+use super::frames::Frames;
 use crate::math::Vector64;
-use crate::rigid::{Bodies, CollisionFilter, Pose, Surface};
+use crate::rigid::{Bodies, BodyKind, CollisionFilter, Pose, Surface};
 use crate::rigid::{Boundary, Wall};
 use crate::shapes::{Core, Shape};
-
-/// Index value for "none".
-pub(super) const NONE: u32 = u32::MAX;
-
-/// An axis-aligned box.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub(super) struct Bounds {
-    pub low: Vector64,
-    pub high: Vector64,
-}
-
-impl Bounds {
-    pub const EMPTY: Bounds = Bounds { low: Vector64::INFINITY, high: Vector64::NEG_INFINITY };
-
-    pub fn grown(&self, by: f64) -> Bounds {
-        Bounds { low: self.low - Vector64::splat(by), high: self.high + Vector64::splat(by) }
-    }
-
-    pub fn overlaps(&self, other: &Bounds) -> bool {
-        self.low.x <= other.high.x
-            && other.low.x <= self.high.x
-            && self.low.y <= other.high.y
-            && other.low.y <= self.high.y
-    }
-
-    /// Separation of two boxes along the axis of largest separation; negative if they overlap [m].
-    pub fn distance(&self, other: &Bounds) -> f64 {
-        (self.low - other.high).max(other.low - self.high).max_element()
-    }
-
-    pub fn holds(&self, other: &Bounds) -> bool {
-        self.low.x <= other.low.x
-            && self.low.y <= other.low.y
-            && self.high.x >= other.high.x
-            && self.high.y >= other.high.y
-    }
-}
 
 /// The owner of a piece, and the range of its vertices.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
@@ -51,12 +17,25 @@ pub(super) struct Piece {
     pub wall: u32,
     first: u32,
     count: u32,
-    /// Contact radius [m].
+    /// Radius of a disc; 0 for a polygon [m].
     pub radius: f64,
+    /// Whether a part of its outline is covered by other solids.
+    joined: bool,
     /// Size of its solid [m].
     pub size: f64,
     pub surface: Surface,
     pub filter: CollisionFilter,
+}
+
+impl Piece {
+    fn of(body: u32, wall: u32) -> Piece {
+        let (surface, filter) = Default::default();
+        Piece { body, wall, first: 0, count: 0, radius: 0.0, joined: false, size: 0.0, surface, filter }
+    }
+
+    fn range(&self) -> std::ops::Range<usize> {
+        self.first as usize..(self.first + self.count) as usize
+    }
 }
 
 /// An infinite half-plane wall.
@@ -73,20 +52,19 @@ pub(super) struct HalfPlane {
 pub(super) struct PieceView<'a> {
     pub vertices: &'a [Vector64],
     pub normals: &'a [Vector64],
-    pub outer: &'a [bool],
-    pub sampled: &'a [bool],
+    /// The part of each edge that is surface, from the distance to the distance from its start [m].
+    pub exposed: &'a [[f64; 2]],
+    /// Whether each vertex is a corner of the surface.
+    pub corners: &'a [bool],
     pub radius: f64,
+    /// Whether a part of its outline is covered by other solids.
+    pub joined: bool,
 }
 
 impl PieceView<'_> {
     /// Whether it is a disc.
     pub fn is_round(&self) -> bool {
         self.vertices.len() == 1
-    }
-
-    /// Whether it is the whole of a convex solid, without cut sides.
-    pub fn is_whole(&self) -> bool {
-        self.outer.iter().all(|&outer| outer)
     }
 }
 
@@ -105,8 +83,8 @@ pub(super) struct Pieces {
     local: Vec<Vertex>,
     vertices: Vec<Vector64>,
     normals: Vec<Vector64>,
-    outer: Vec<bool>,
-    sampled: Vec<bool>,
+    exposed: Vec<[f64; 2]>,
+    corners: Vec<bool>,
     known_bodies: usize,
 }
 
@@ -125,11 +103,11 @@ impl Pieces {
             };
             let filter = CollisionFilter { layers: u32::MAX, collides_with: u32::MAX };
             let size = shape.moments().area.sqrt();
-            let owner =
-                Piece { body: NONE, wall: index, first: 0, count: 0, radius: 0.0, size, surface: wall.surface, filter };
-            pieces.append(&shape.core(0.0), &owner);
+            let owner = Piece { size, surface: wall.surface, filter, ..Piece::of(NONE, index) };
+            pieces.append(&shape.core(), &owner);
             pieces.place_last(&Pose { position, angle: 0.0 });
         }
+        pieces.join(|_| false);
         pieces
     }
 
@@ -138,21 +116,41 @@ impl Pieces {
         let (known, pieces) = (self.known_bodies, self.all.len());
         for id in known..bodies.len() {
             let view = &bodies.views()[id];
-            let owner = Piece {
-                body: id as u32,
-                wall: NONE,
-                first: 0,
-                count: 0,
-                radius: 0.0,
-                size: bodies.sizes[id],
-                surface: view.surface,
-                filter: view.filter,
-            };
+            let (size, surface, filter) = (bodies.sizes[id], view.surface, view.filter);
+            let owner = Piece { size, surface, filter, ..Piece::of(id as u32, NONE) };
             self.append(&bodies.cores[id], &owner);
             self.place_last(&bodies.poses[id]);
         }
+        let is_static = |id: usize| bodies.views()[id].kind == BodyKind::Static;
+        if (known..bodies.len()).any(is_static) {
+            self.join(|body| is_static(body as usize));
+        }
         self.known_bodies = bodies.len();
         self.all.len() - pieces
+    }
+
+    /// Marks the parts of the outlines of walls and static bodies that are covered by other such solids: a body
+    /// that slides over flush solids must not catch on the edges between them.
+    fn join(&mut self, is_static: impl Fn(u32) -> bool) {
+        let fixed = |piece: &Piece| piece.count > 1 && (piece.body == NONE || is_static(piece.body));
+        let solids: Vec<usize> = (0..self.all.len()).filter(|&index| fixed(&self.all[index])).collect();
+        let solid = |&index: &usize| {
+            let (piece, range) = (&self.all[index], self.all[index].range());
+            Solid {
+                vertices: &self.vertices[range.clone()],
+                normals: &self.normals[range],
+                bounds: self.bounds[index],
+                size: piece.size,
+                owner: (piece.body, piece.wall),
+            }
+        };
+        let planes: Vec<(Vector64, Vector64)> = self.half_planes.iter().map(|p| (p.point, p.normal)).collect();
+        let covered = exposure::covered(&solids.iter().map(solid).collect::<Vec<_>>(), &planes);
+        for (&index, covered) in solids.iter().zip(covered) {
+            let range = self.all[index].range();
+            self.all[index].joined =
+                exposure::cut(&covered, &mut self.exposed[range.clone()], &mut self.corners[range]);
+        }
     }
 
     fn append(&mut self, core: &Core, owner: &Piece) {
@@ -162,8 +160,9 @@ impl Pieces {
             self.local.extend(columns.map(|(&place, &normal)| Vertex { place, normal }));
             self.vertices.resize(self.local.len(), Vector64::ZERO);
             self.normals.resize(self.local.len(), Vector64::ZERO);
-            self.outer.extend(&piece.outer);
-            self.sampled.extend(&piece.sampled);
+            let edges = piece.outer.iter().zip(crate::shapes::edges(&piece.vertices));
+            self.exposed.extend(edges.map(|(&outer, (p, q))| if outer { [0.0, (q - p).length()] } else { HIDDEN }));
+            self.corners.extend(&piece.corners);
             self.all.push(Piece { first, count, radius: core.radius, ..owner.clone() });
         }
     }
@@ -177,19 +176,12 @@ impl Pieces {
     }
 
     /// Updates the pieces of bodies that may have moved.
-    pub fn update(&mut self, bodies: &Bodies) {
-        let (mut turned, mut rotation) = (NONE, Vector64::X);
+    pub fn update(&mut self, bodies: &Bodies, frames: &Frames) {
         for index in 0..self.all.len() {
-            let Piece { body, first, count, .. } = self.all[index];
-            if body == NONE || !bodies.is_active(body as usize) {
-                continue;
+            let body = self.all[index].body;
+            if body != NONE && bodies.is_active(body as usize) {
+                self.place(index, &bodies.poses[body as usize], frames.of(body).rotation);
             }
-            let pose = &bodies.poses[body as usize];
-            let looks_the_same = count == 1 && self.local[first as usize].place == Vector64::ZERO;
-            if !looks_the_same && turned != body {
-                (turned, rotation) = (body, Vector64::from_angle(pose.angle));
-            }
-            self.place(index, pose, rotation);
         }
     }
 
@@ -239,7 +231,7 @@ impl Pieces {
     fn place(&mut self, index: usize, pose: &Pose, rotation: Vector64) {
         let piece = &self.all[index];
         let mut bounds = Bounds::EMPTY;
-        for k in piece.first as usize..(piece.first + piece.count) as usize {
+        for k in piece.range() {
             let place = pose.position + rotation.rotate(self.local[k].place);
             self.vertices[k] = place;
             self.normals[k] = rotation.rotate(self.local[k].normal);
@@ -256,13 +248,14 @@ impl Pieces {
 
     pub fn view(&self, index: u32) -> PieceView<'_> {
         let piece = &self.all[index as usize];
-        let range = piece.first as usize..(piece.first + piece.count) as usize;
+        let range = piece.range();
         PieceView {
             vertices: &self.vertices[range.clone()],
             normals: &self.normals[range.clone()],
-            outer: &self.outer[range.clone()],
-            sampled: &self.sampled[range],
+            exposed: &self.exposed[range.clone()],
+            corners: &self.corners[range],
             radius: piece.radius,
+            joined: piece.joined,
         }
     }
 }

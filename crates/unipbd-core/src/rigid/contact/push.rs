@@ -20,3 +20,11 @@ impl Push {
         Twist { linear: self.linear, angular: self.angular_b }
     }
 }
+
+impl std::ops::AddAssign for Push {
+    fn add_assign(&mut self, other: Push) {
+        self.linear += other.linear;
+        self.angular_a += other.angular_a;
+        self.angular_b += other.angular_b;
+    }
+}

@@ -29,6 +29,7 @@ impl Contacts {
             corrections: Vec::new(),
             wall_impulses: saved.wall_impulses,
             wall_forces: saved.wall_forces,
+            backward: saved.backward,
             dt: saved.dt,
             settings: self.settings,
             solver: self.solver.clone(),

@@ -1,11 +1,13 @@
 //! Settings of the contact solver.
 
 use super::SleepSettings;
-use crate::scene::ContactDescription;
+use crate::scene::{ContactDescription, ContactMethod};
 
 /// Settings of the contact solver.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ContactSettings {
+    /// The order of contacts and joints in an iteration.
+    pub method: ContactMethod,
     /// Factor that reduces the mass splitting: over-relaxation of the split Jacobi sweep, below 2.
     /// With an odd number of iterations in a substep warm starting is stable only up to 4/3 (one) or 1.69 (three).
     pub relaxation: f64,
@@ -21,8 +23,9 @@ pub struct ContactSettings {
 
 impl Default for ContactSettings {
     fn default() -> Self {
-        let ContactDescription { relaxation, iterations } = ContactDescription::default();
+        let ContactDescription { method, relaxation, iterations, .. } = ContactDescription::default();
         ContactSettings {
+            method,
             relaxation,
             iterations,
             depenetration: Depenetration::default(),
@@ -51,5 +54,14 @@ pub struct Depenetration {
 impl Default for Depenetration {
     fn default() -> Self {
         Depenetration { slop: 1e-4, fraction: 0.1, deep: 0.01, deep_fraction: 0.4, speed: 3.0 }
+    }
+}
+
+impl Depenetration {
+    /// Minus the part of an overlap that a substep of length `dt` [s] removes between bodies of this size [m].
+    pub(super) fn lacking(&self, overlap: f64, size: f64, dt: f64) -> f64 {
+        let overlap = overlap - self.slop * size;
+        let deep = (overlap - self.deep * size).max(0.0);
+        -(self.fraction * overlap + (self.deep_fraction - self.fraction) * deep).clamp(0.0, self.speed * dt)
     }
 }

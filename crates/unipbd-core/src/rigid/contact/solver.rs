@@ -1,19 +1,25 @@
 //! Interface of the contact solver: the exchangeable computation of contact pushes.
 
-use super::contact_set::Rows;
-use super::jacobi::Jacobi;
+use super::joint::Linked;
 use super::manifold::Contact;
+use super::sweep::Sweep;
 use crate::math::Vector64;
-use crate::rigid::{Bodies, InverseMass, Twist};
+use crate::rigid::{Bodies, InverseMass};
 
-/// A method to compute the pushes of contacts. Search, splitting of masses, joints, rebound and depenetration are
-/// common to all methods.
+/// A method to compute the pushes of contacts. Search, joints, rebound and depenetration are common to all methods.
 pub(crate) trait ContactSolver: Send + Sync {
-    /// Fraction of the impulses of the last substep for warm starting, 0 to 1.
-    fn kept(&self) -> f64;
+    /// Whether all contacts act from one state, with the mass of a body split among them.
+    fn at_once(&self) -> bool;
 
-    /// One iteration of all contacts on the displacements of the substep; the sums stay in `jacobi`.
-    fn sweep(&self, jacobi: &mut Jacobi, rows: Rows<'_>, displacements: &[Twist]);
+    /// Fraction of the impulses of the last substep for warm starting, 0 to 1.
+    fn kept(&self) -> f64 {
+        1.0
+    }
+
+    /// One iteration of all contacts and joints on the displacements of the substep.
+    fn sweep(&self, sweep: Sweep<'_>) {
+        sweep.run(|contact, _, displacements| contact.solve(displacements), Linked::solve);
+    }
 
     /// Writes the inverse masses for contacts, if they differ from those of the bodies.
     fn scale_masses(&self, contacts: &[Contact], bodies: &Bodies, up: Vector64, out: &mut Vec<InverseMass>) {
@@ -21,15 +27,20 @@ pub(crate) trait ContactSolver: Send + Sync {
     }
 }
 
-/// Split Jacobi (Tonge et al. 2012): impulses persist between substeps, friction holds without creep.
+/// Gauss-Seidel: each contact sees the pushes of those before it.
+pub(crate) struct InTurn;
+
+impl ContactSolver for InTurn {
+    fn at_once(&self) -> bool {
+        false
+    }
+}
+
+/// Split Jacobi (Tonge et al. 2012): the mass of a body is split among its contacts.
 pub(crate) struct Split;
 
 impl ContactSolver for Split {
-    fn kept(&self) -> f64 {
-        1.0
-    }
-
-    fn sweep(&self, jacobi: &mut Jacobi, rows: Rows<'_>, displacements: &[Twist]) {
-        jacobi.sweep(rows, displacements.len(), |contact, _| contact.solve(displacements));
+    fn at_once(&self) -> bool {
+        true
     }
 }

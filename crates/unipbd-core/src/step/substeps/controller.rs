@@ -3,8 +3,6 @@
 use crate::observe::SubstepReason;
 use crate::scene::{Scene, SubstepLaw, Substeps};
 
-/// Height of a stack of bodies that one substep per frame can carry.
-const BODIES_PER_SUBSTEP: f64 = 2.5;
 /// The number of substeps is kept while at least this fraction of it is demanded, and falls no faster: each
 /// change of it changes the compression that carries a liquid, and excites oscillations.
 const KEPT: f64 = 0.75;
@@ -18,8 +16,10 @@ pub struct Demand {
     pub speed: f64,
     /// Largest pressure over density, from the multipliers or the depth of the liquid [m^2/s^2].
     pub pressure: f64,
-    /// Number of bodies in a stack that may carry each other.
-    pub chain: f64,
+    /// Substeps that rigid bodies need by their speed and spin.
+    pub body_motion: f64,
+    /// Substeps that rigid bodies need by the height of stacks and their mass ratios.
+    pub support: f64,
 }
 
 /// Chooses the number of substeps per frame.
@@ -91,7 +91,7 @@ impl SubstepRule {
         (before * STIFFENING * square(f64::from(last) / f64::from(substeps))).max(least).min(1.0)
     }
 
-    /// The largest of four demands: speed, trust region, target compression, and the height of stacks.
+    /// The largest of the demands: speed, trust region, target compression, motion and support of bodies.
     fn wanted(&self, frame: f64, demand: Demand) -> (f64, SubstepReason) {
         let [speed, trust, compression] = self.law.wanted(frame, demand.speed, demand.pressure);
         let fast = demand.speed * demand.speed > demand.pressure;
@@ -99,7 +99,8 @@ impl SubstepRule {
             (speed, SubstepReason::Speed),
             (trust, if fast { SubstepReason::Speed } else { SubstepReason::TrustRegion }),
             (compression, SubstepReason::Compression),
-            (demand.chain / BODIES_PER_SUBSTEP, SubstepReason::Support),
+            (demand.body_motion, SubstepReason::Bodies),
+            (demand.support, SubstepReason::Support),
         ];
         demands.into_iter().fold((0.0, SubstepReason::Compression), |a, b| if b.0 > a.0 { b } else { a })
     }
@@ -164,6 +165,6 @@ mod tests {
         let loose = Scene { solver: crate::scene::SolverSettings { target_compression: 0.1, ..loose.solver }, ..loose };
         let still = Demand { pressure: 30.0, ..Demand::default() };
         assert_eq!(SubstepRule::new(&loose).choose(1.0 / 60.0, still).reason, SubstepReason::TrustRegion);
-        assert_eq!(reason(Demand { chain: 100.0, ..Demand::default() }), SubstepReason::Support);
+        assert_eq!(reason(Demand { support: 100.0, ..Demand::default() }), SubstepReason::Support);
     }
 }

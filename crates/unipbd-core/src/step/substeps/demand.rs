@@ -2,6 +2,7 @@
 
 use super::controller::Demand;
 use super::statistics::FluidStatistics;
+use crate::coupling::RigidBodies;
 use crate::math::{Vector, wide};
 use crate::observe::{Event, Severity};
 use crate::phase::Phase;
@@ -54,12 +55,13 @@ impl World {
         let parts = &self.parts;
         let emitted = parts.emitters.as_ref().map_or(0.0, |emitters| emitters.speed_max(self.clock.time));
         let moving = if self.clock.step == 0 { self.fastest() } else { self.clock.speed };
-        let chain = parts.rigid.as_ref().map_or(0.0, |rigid| rigid.support_chain(wide(parts.gravity)));
+        let of_bodies = |rigid: &RigidBodies| rigid.demand(parts.frame_time, wide(parts.gravity));
+        let bodies = parts.rigid.as_ref().map(of_bodies).unwrap_or_default();
         // Pressure from the relative motion within the liquids.
         let dynamic = self.square_of_relative_speed(liquids, is_liquid);
         let known = if self.clock.step == 0 { 0.0 } else { liquids.pressure(self.clock.dt) };
         let pressure = self.depth_pressure(liquids).max(dynamic).max(known / UNEXPECTED);
-        Demand { speed: moving.max(emitted), chain, pressure }
+        Demand { speed: moving.max(emitted), body_motion: bodies.motion, support: bodies.support, pressure }
     }
 
     pub(in crate::step) fn fastest(&self) -> f64 {

@@ -1,0 +1,156 @@
+//! How far bodies may move before their contacts are searched again.
+//!
+//! A search predicts each body to go on with its velocity until the end of the frame. A pair is searched with a
+//! margin that covers the predicted relative motion, and an allowance of both bodies for what differs from it.
+//! A body that leaves its allowance, as after an impact, is searched again within the frame.
+
+use super::bounds::NONE;
+use super::manifold::entry;
+use crate::rigid::{Bodies, Pose, Twist};
+
+/// Allowance of a body at rest, relative to its size.
+const LEAST: f64 = 0.01;
+/// Rotation after which the faces of a polygon are searched again [rad].
+const TURN: f64 = 0.15;
+/// Relative motion after which the same contacts are no longer trusted, relative to the size of the body: another
+/// face may be nearer.
+const WAY: f64 = 0.5;
+
+/// A body at its last search.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
+struct Reference {
+    pose: Pose,
+    velocity: Twist,
+    /// Time of the search since the start of the frame [s].
+    time: f64,
+    /// Way that may differ from the prediction [m].
+    allowance: f64,
+    /// Fastest motion relative to a nearby body [m/s].
+    closing: f64,
+}
+
+/// The last search of each body.
+#[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Reach {
+    bodies: Vec<Reference>,
+    /// Bodies to be searched in this substep.
+    pub wanted: Vec<bool>,
+    /// Distance of the outline from the centre of mass that rotation moves: 0 for discs [m].
+    levers: Vec<f64>,
+    /// Length of the frame [s], and the time since its start.
+    frame: f64,
+    elapsed: f64,
+    begun: bool,
+}
+
+impl Reach {
+    /// Begins a frame of this length [s]: all bodies are searched in the next substep.
+    pub fn begin_frame(&mut self, frame: f64) {
+        (self.frame, self.elapsed, self.begun) = (frame, 0.0, false);
+    }
+
+    /// Marks the bodies that must be searched before a substep; returns whether there are any.
+    pub fn mark(&mut self, bodies: &Bodies, dt: f64, gravity: f64) -> bool {
+        let known = self.levers.len();
+        let round = |id: usize| bodies.cores[id].radius > 0.0;
+        self.levers.extend((known..bodies.len()).map(|id| if round(id) { 0.0 } else { bodies.reaches[id] }));
+        self.bodies.resize(bodies.len(), Reference::default());
+        let over = self.elapsed + dt > self.frame * (1.0 + 1e-9);
+        if !self.begun || over || known < bodies.len() {
+            if over {
+                (self.frame, self.elapsed) = (self.frame.max(dt), 0.0);
+            }
+            self.begun = true;
+            self.wanted.clear();
+            self.wanted.resize(bodies.len(), true);
+            return true;
+        }
+        let mut any = false;
+        for id in 0..bodies.len() {
+            self.wanted[id] = bodies.is_active(id) && self.left(id, bodies, dt, gravity);
+            any |= self.wanted[id];
+        }
+        any
+    }
+
+    /// Whether a body may leave its allowance within the next substep.
+    fn left(&self, id: usize, bodies: &Bodies, dt: f64, gravity: f64) -> bool {
+        let (of, pose, velocity) = (&self.bodies[id], &bodies.poses[id], &bodies.velocities[id]);
+        let (time, lever) = (self.elapsed - of.time, self.levers[id]);
+        let off = (pose.position - of.pose.position - of.velocity.linear * time).length();
+        let turned = pose.angle - of.pose.angle;
+        let off_turn = (turned - of.velocity.angular * time).abs();
+        let faster = (velocity.linear - of.velocity.linear).length() + gravity * dt;
+        let spun = (velocity.angular - of.velocity.angular).abs();
+        off + off_turn * lever + (faster + spun * lever) * dt > of.allowance
+            || (lever > 0.0 && time > 0.0 && turned.abs() + velocity.angular.abs() * dt > TURN)
+            || (time > 0.0 && of.closing * (time + dt) > WAY * bodies.sizes[id])
+    }
+
+    /// Ends a substep of this length [s].
+    pub fn pass(&mut self, dt: f64) {
+        self.elapsed += dt;
+    }
+
+    /// Time until the end of the frame [s].
+    fn ahead(&self) -> f64 {
+        self.frame - self.elapsed
+    }
+
+    /// Takes the present poses of the wanted bodies as the start of their predictions.
+    pub fn note(&mut self, bodies: &Bodies) {
+        for id in (0..bodies.len()).filter(|&id| self.wanted[id]) {
+            let (pose, velocity) = (bodies.poses[id], bodies.velocities[id]);
+            self.bodies[id] = Reference { pose, velocity, time: self.elapsed, ..self.bodies[id] };
+        }
+    }
+
+    /// Computes the allowances of the wanted bodies: a body may be hit by each nearby body.
+    pub fn allow(&mut self, bodies: &Bodies, gravity: f64, pairs: impl Iterator<Item = (u32, u32)>) {
+        for id in (0..bodies.len()).filter(|&id| self.wanted[id]) {
+            self.bodies[id].closing = 0.0;
+        }
+        for (a, b) in pairs {
+            if self.is_wanted(a) || self.is_wanted(b) {
+                let speed = self.closing(a, b);
+                for body in [a, b] {
+                    if self.is_wanted(body) {
+                        let most = &mut self.bodies[body as usize].closing;
+                        *most = most.max(speed);
+                    }
+                }
+            }
+        }
+        let ahead = self.ahead();
+        for id in (0..bodies.len()).filter(|&id| self.wanted[id]) {
+            let fall = gravity * self.frame * self.frame;
+            self.bodies[id].allowance = self.bodies[id].closing * ahead + fall + LEAST * bodies.sizes[id];
+        }
+    }
+
+    /// Whether a body is searched in this substep.
+    #[inline]
+    pub fn is_wanted(&self, body: u32) -> bool {
+        body != NONE && self.wanted[body as usize]
+    }
+
+    /// Speed of two bodies relative to each other, with that of their outlines by rotation [m/s].
+    fn closing(&self, a: u32, b: u32) -> f64 {
+        let (of_a, of_b) = (entry(&self.bodies, a), entry(&self.bodies, b));
+        let spin = |of: &Reference, body: u32| of.velocity.angular.abs() * entry(&self.levers, body);
+        (of_a.velocity.linear - of_b.velocity.linear).length() + spin(&of_a, a) + spin(&of_b, b)
+    }
+
+    /// Largest distance of two bodies that can touch until the end of the frame [m].
+    pub fn margin(&self, (a, b): (u32, u32)) -> f64 {
+        let (of_a, of_b) = (entry(&self.bodies, a), entry(&self.bodies, b));
+        self.closing(a, b) * self.ahead() + of_a.allowance + of_b.allowance
+    }
+
+    /// The predicted motion of a body until the end of the frame, and how far it may be off [m].
+    pub fn sweep(&self, body: u32) -> (Twist, f64) {
+        let of = &self.bodies[body as usize];
+        let turning = of.velocity.angular.abs() * self.levers[body as usize] * self.ahead();
+        (of.velocity.scaled(self.ahead()), of.allowance + turning)
+    }
+}
