@@ -31,6 +31,8 @@ const DRIFT: f64 = 4e-3;
 const RISING: f64 = 0.5;
 /// Growth of the speed in a frame that counts as one: a body that begins to slide gains 3 % in its thirtieth frame.
 const GROWTH: f64 = 1.01;
+/// Speed relative to the limit below which its growth is rounding.
+const NOISE: f64 = 1e-4;
 
 /// Rest times of bodies, and the islands of sleeping bodies.
 #[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
@@ -161,8 +163,10 @@ impl Islands {
             // The removal of old overlap moves a body, too, but that is no motion.
             self.drifts[id] += velocity.scaled(frame_time);
             let drift = self.drifts[id].linear.length() + self.drifts[id].angular.abs() * reach;
-            let slow = speed < settings.speed * (gravity * size).sqrt();
-            self.rising[id] = if speed > GROWTH * self.speeds[id] { self.rising[id] + frame_time } else { 0.0 };
+            let limit = settings.speed * (gravity * size).sqrt();
+            let (slow, noise) = (speed < limit, speed < NOISE * limit);
+            self.rising[id] =
+                if !noise && speed > GROWTH * self.speeds[id] { self.rising[id] + frame_time } else { 0.0 };
             self.speeds[id] = speed;
             let still = slow && drift < DRIFT * size && self.rising[id] < RISING * settings.delay;
             self.rest[id] = if still && !bodies.pushed[id] { self.rest[id] + frame_time } else { 0.0 };
