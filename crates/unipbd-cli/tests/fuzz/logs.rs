@@ -63,8 +63,7 @@ fn recorded() -> Vec<u8> {
         simulation.next_frame();
     }
     recorder.finish().unwrap();
-    let bytes = output.0.lock().unwrap().get_ref().clone();
-    bytes
+    output.0.lock().unwrap().get_ref().clone()
 }
 
 const MAGIC: usize = 8;

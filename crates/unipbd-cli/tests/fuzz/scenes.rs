@@ -83,7 +83,7 @@ fn read(text: &str, overrides: &[Override]) {
             let cost = loaded.scene.estimate();
             let small = cost.particles_at_peak + 20 * loaded.scene.body.len() as u64 + cost.substeps as u64 <= SMALL;
             let copied = loaded.scene.body.iter().any(|body| body.copies.is_some());
-            if small && !copied && text.len() % 8 == 0 {
+            if small && !copied && text.len().is_multiple_of(8) {
                 let mut solver = loaded.scene.build(BuildOptions { threads: Some(1), seed: None });
                 let _ = solver.step_frame();
             }
