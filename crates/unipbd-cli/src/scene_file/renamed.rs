@@ -28,10 +28,11 @@ const RENAMED: &[Renamed] = &[
     Renamed { old: "solver.mass_density", new: &["legacy.mass_density"], reason: FOR_COMPARISON },
     Renamed { old: "solver.gradients=middle", new: &[], reason: "write \"early\": waves lose less with it" },
     Renamed {
-        old: "contacts.method",
+        old: "contacts.method=averaged",
         new: &["legacy.averaged_contacts"],
-        reason: "it holds the over-relaxation of \"averaged\"; leave both out for \"split\"",
+        reason: "it holds the over-relaxation",
     },
+    Renamed { old: "contacts.method=split", new: &[], reason: "write \"split_jacobi\"" },
     Renamed {
         old: "solver.coarse_projection",
         new: &["solver.pressure_grid"],

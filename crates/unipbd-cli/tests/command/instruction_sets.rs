@@ -12,7 +12,7 @@ const SCENES: [(&str, &str); 6] = [
     ),
     (
         "grid",
-        "spacing = 0.02\n[solver]\ncoarse_projection = 3\nsettle_substeps = 2\n[[liquid]]\nname = \"water\"\n[[block]]\n\
+        "spacing = 0.02\n[solver]\npressure_grid = \"on\"\nsettle_substeps = 2\n[[liquid]]\nname = \"water\"\n[[block]]\n\
       material = \"water\"\nmin = [0.0, 0.0]\nmax = [1.4, 1.4]\n[[tank]]\nmin = [0.0, 0.0]\nmax = [2.0, 2.0]\n",
     ),
     (

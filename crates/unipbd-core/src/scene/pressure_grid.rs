@@ -57,8 +57,9 @@ impl Scene {
         if let Substeps::Fixed(count) = self.solver.substeps {
             return PressureGridChoice::off(format!("the number of substeps is fixed at {count}"));
         }
-        if self.body.iter().any(|body| body.solver == BodySolver::ShapeMatching) {
-            return PressureGridChoice::off("bodies with shape matching need the substeps of the particles alone");
+        let matched = self.body.iter().any(|body| body.solver == BodySolver::ShapeMatching);
+        if matched || !self.rope.is_empty() || !self.solid.is_empty() {
+            return PressureGridChoice::off("ropes and soft bodies need more substeps than it takes");
         }
         if !self.joint.is_empty() {
             return PressureGridChoice::off("bodies on joints turn too slowly with it");
