@@ -64,6 +64,9 @@ impl Scene {
         if !self.joint.is_empty() {
             return PressureGridChoice::off("bodies on joints turn too slowly with it");
         }
+        if self.liquid.iter().any(|liquid| liquid.cohesion != 0.0 || liquid.adhesion != 0.0) {
+            return PressureGridChoice::off("cohesion and adhesion pump energy with it");
+        }
         let particles = self.most_particles();
         if particles < LEAST_PARTICLES {
             return PressureGridChoice::off(format!("{particles} particles are too few for it to pay"));
