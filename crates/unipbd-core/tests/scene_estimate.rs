@@ -1,18 +1,25 @@
 //! Estimates against counts done by hand.
 
-use unipbd_core::scene::{BYTES_PER_PARTICLE, Block, Emitter, Gas, Liquid, Scene, SmokeSource, Substeps};
+use unipbd_core::scene::{
+    BYTES_PER_PARTICLE, Block, Emitter, Gas, Liquid, PressureGridUse, Scene, SmokeSource, SolverSettings, Substeps,
+};
 use unipbd_core::step::{Demand, SubstepRule};
+
+/// The particles alone carry the pressure: their substeps follow the depth.
+fn plain() -> SolverSettings {
+    SolverSettings { pressure_grid: PressureGridUse::Off, ..SolverSettings::default() }
+}
 
 fn water(min: [f64; 2], max: [f64; 2]) -> Scene {
     let block = Block { material: "water".into(), min, max, velocity: [0.0; 2], jitter: 0.0, temperature: 0.0 };
     let liquid = Liquid { name: "water".into(), ..Liquid::default() };
-    Scene { liquid: vec![liquid], block: vec![block], ..Scene::default() }
+    Scene { liquid: vec![liquid], block: vec![block], solver: plain(), ..Scene::default() }
 }
 
 fn jet() -> Scene {
     let emitter = Emitter { start: 1.0, ..Emitter::new("air", [0.0; 2], 1.0, 2.0) };
     let gas = Gas { name: "air".into(), lifetime: Some(2.0), ..Gas::default() };
-    Scene { gas: vec![gas], emitter: vec![emitter], duration: 10.0, ..Scene::default() }
+    Scene { gas: vec![gas], emitter: vec![emitter], duration: 10.0, solver: plain(), ..Scene::default() }
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! Parts of the fluid that meet no air: their pressure is determined up to a constant.
 
+use super::couplings::Couplings;
 use super::spans::Spans;
-use super::system::Couplings;
 use crate::bytes::held;
 use crate::math::Real;
 use crate::rigid::contact::UnionFind;

@@ -1,8 +1,8 @@
 //! One grid of the cycle: its couplings, its sweeps, and the transfers to the next finer and coarser grid.
 
+use super::couplings::Couplings;
 use super::lattice::stride;
 use super::spans::{Spans, by_row};
-use super::system::Couplings;
 use super::{held_by, renew};
 use crate::math::{Real, larger};
 use crate::parallel::Parallelism;

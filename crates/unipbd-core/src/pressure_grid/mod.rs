@@ -9,6 +9,7 @@
 
 mod chords;
 mod components;
+mod couplings;
 mod felt;
 mod flow;
 mod lattice;
@@ -273,7 +274,8 @@ impl Problem for Pressed<'_> {
 
     fn image(&self, finest: &Level, (x, out): (&[Real], &mut [Real]), parallelism: Parallelism) {
         if self.solids.any() {
-            let (of, size) = ((self.system, self.solids), (&finest.spans, self.stride));
+            let of = (self.solids, |cell| self.system.counts(cell));
+            let size = (&finest.spans, self.stride);
             self.operator.image(of, (x, out), size, parallelism);
         } else {
             finest.image(x, out, parallelism);

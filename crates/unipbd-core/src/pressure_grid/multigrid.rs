@@ -1,10 +1,10 @@
 //! Conjugate gradients, with a cycle through ever coarser grids as the preconditioner.
 
+use super::couplings::Couplings;
 use super::lattice::Lattice;
 use super::level::Level;
 use super::openings::Openings;
 use super::spans::Spans;
-use super::system::Couplings;
 use super::{held_by, renew};
 use crate::math::Real;
 use crate::parallel::Parallelism;

@@ -1,9 +1,9 @@
 //! The operator of the pressure system where bodies are in it: the couplings of the fluid alone, and the response of
 //! the bodies as a whole.
 
+use super::couplings::Couplings;
 use super::solids::Solids;
 use super::spans::Spans;
-use super::system::{Couplings, System};
 use super::{held_by, renew};
 use crate::math::Real;
 use crate::parallel::Parallelism;
@@ -33,10 +33,10 @@ impl Operator {
         });
     }
 
-    /// Applies the operator to a pressure.
+    /// Applies the operator to a pressure, in the cells that count.
     pub fn image(
         &self,
-        (system, solids): (&System, &Solids),
+        (solids, counts): (&Solids, impl Fn(usize) -> bool + Sync),
         (pressure, out): (&[Real], &mut [Real]),
         (spans, stride): (&Spans, usize),
         parallelism: Parallelism,
@@ -46,10 +46,10 @@ impl Operator {
             for (cell, out) in (first..).zip(out) {
                 let across = right[cell] * pressure[cell + 1] + right[cell - 1] * pressure[cell - 1];
                 let along = upper[cell] * pressure[cell + stride] + upper[cell - stride] * pressure[cell - stride];
-                *out = if system.counts(cell) { total[cell] * pressure[cell] - (across + along) } else { 0.0 };
+                *out = if counts(cell) { total[cell] * pressure[cell] - (across + along) } else { 0.0 };
             }
         });
-        solids.respond(pressure, out, stride, |cell| system.counts(cell));
+        solids.respond(pressure, out, stride, counts);
     }
 
     /// Memory held [bytes].

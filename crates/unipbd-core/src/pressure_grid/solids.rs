@@ -62,6 +62,7 @@ pub(super) struct Solids {
     intervals: Vec<[f64; 2]>,
     /// Covered parts of the faces of one row.
     parts: Vec<f64>,
+    outline: Outline,
 }
 
 /// Unit of the responses: the mass of a full cell of the heaviest fluid [kg], and the substep [s].
@@ -113,7 +114,8 @@ impl Solids {
     /// body changes continuously with its place: lines along the direction of the face cut the outline.
     fn cover(&mut self, lattice: &Lattice, bodies: &Bodies, body: u32) {
         let pose = bodies.pose(body);
-        let outline = Outline::new(&bodies.views()[body as usize], pose);
+        let mut outline = std::mem::take(&mut self.outline);
+        outline.take(&bodies.views()[body as usize], pose);
         let (cell, origin) = (f64::from(lattice.cell), lattice.lowest());
         let counts = [lattice.width, lattice.height];
         for axis in [0, 1] {
@@ -147,6 +149,7 @@ impl Solids {
                 }
             }
         }
+        self.outline = outline;
     }
 
     /// The faces of all bodies.

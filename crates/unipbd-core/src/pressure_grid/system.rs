@@ -1,5 +1,6 @@
 //! The linear system of the grid: liquid cells, couplings between cells, and right sides.
 
+use super::couplings::Couplings;
 use super::flow::Flow;
 use super::lattice::Lattice;
 use super::mixture::Mixture;
@@ -31,17 +32,6 @@ const POROUS: Real = 0.9;
 const POROUS_RELAXATION: Real = 0.06;
 /// ...if the fill is uniform around the cell: near a free surface the fill of opposite neighbours differs by more.
 const SLANTED: Real = 0.3;
-
-/// Couplings by cell; all are zero where there is no liquid.
-#[derive(Default)]
-pub(super) struct Couplings {
-    /// With the cell to the right.
-    pub right: Vec<Real>,
-    /// With the cell above.
-    pub upper: Vec<Real>,
-    /// With air.
-    pub air: Vec<Real>,
-}
 
 /// The system of one substep, by cell.
 #[derive(Default)]

@@ -67,6 +67,10 @@ impl Scene {
         if self.liquid.iter().any(|liquid| liquid.cohesion != 0.0 || liquid.adhesion != 0.0) {
             return PressureGridChoice::off("cohesion and adhesion pump energy with it");
         }
+        let closed = self.tank.iter().any(|tank| tank.open.is_empty());
+        if !closed && self.materials().any(|material| material.is_two_sided()) {
+            return PressureGridChoice::off("gas in the open does not keep its momentum with it");
+        }
         let particles = self.most_particles();
         if particles < LEAST_PARTICLES {
             return PressureGridChoice::off(format!("{particles} particles are too few for it to pay"));

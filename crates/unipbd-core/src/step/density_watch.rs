@@ -24,7 +24,8 @@ impl World {
         if !self.plan.has_density() {
             return;
         }
-        let errors = self.errors_by_material();
+        let mut errors = std::mem::take(&mut self.material_errors);
+        self.sum_errors(&mut errors);
         self.watched.resize(errors.len(), Watched::default());
         for (material, errors) in errors.iter().enumerate() {
             let watched = &mut self.watched[material];
@@ -36,11 +37,13 @@ impl World {
                 self.warn_of_density(material, errors);
             }
         }
+        self.material_errors = errors;
     }
 
-    fn errors_by_material(&self) -> Vec<Errors> {
+    fn sum_errors(&self, all: &mut Vec<Errors>) {
         let particles = &self.parts.particles;
-        let mut all = vec![Errors::default(); self.parts.materials.len()];
+        all.clear();
+        all.resize(self.parts.materials.len(), Errors::default());
         for row in (0..particles.dense()).filter(|&row| particles.inverse_mass[row] > 0.0) {
             let error = match particles.phase[row] {
                 Phase::Liquid => particles.density_error[row].max(0.0),
@@ -55,7 +58,6 @@ impl World {
                 (of.worst, of.largest) = (row, error.abs());
             }
         }
-        all
     }
 
     fn warn_of_density(&mut self, material: usize, errors: &Errors) {

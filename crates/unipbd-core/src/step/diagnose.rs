@@ -218,6 +218,7 @@ impl World {
         let particles = &self.parts.particles;
         let pressure = |row: usize| particles.multiplier[row] * particles.inverse_mass[row];
         let largest = self.parts.parallelism.max(particles.dense(), pressure);
-        self.parts.pressure_scale * f64::from(largest.max(0.0)) / (self.clock.dt * self.clock.dt)
+        let scale = (self.parts.pressure_scale / (self.clock.dt * self.clock.dt)) as Real;
+        f64::from(largest.max(0.0) * scale)
     }
 }

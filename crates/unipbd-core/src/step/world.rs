@@ -7,7 +7,7 @@ use super::integrate::BodyForce;
 use super::pipeline::{Features, Plan};
 use super::substeps::{Choice, SubstepRule};
 use super::timings::Timings;
-use super::watched::Watched;
+use super::watched::{Errors, Watched};
 use super::{FrameReport, SolverError, Stage};
 use crate::constraints::{ConstraintGroup, CorrectionParts, Corrections, Needs, Substep};
 use crate::coupling::RigidBodies;
@@ -120,6 +120,8 @@ pub(crate) struct World {
     pub(super) choice: Choice,
     /// What is known about the density of each material.
     pub(super) watched: Vec<Watched>,
+    /// Buffer of the density errors by material.
+    pub(super) material_errors: Vec<Errors>,
     /// Effects that are limited for stability, with a warning already issued.
     pub(super) cut: Vec<&'static str>,
     /// Iterations of the frame so far.
@@ -147,6 +149,7 @@ impl World {
             timings: Timings::default(),
             measured: Measured::default(),
             watched: Vec::new(),
+            material_errors: Vec::new(),
             cut: Vec::new(),
             corrections: Corrections::default(),
             changes: Changes::default(),

@@ -80,7 +80,8 @@ impl NarrowPhase {
             }
         }
         let (found, frozen, parallelism) = (saved.found, saved.frozen, self.parallelism);
-        Some(NarrowPhase { pieces, pairs, found, frozen, parallelism, ..NarrowPhase::default() })
+        let reach = saved.reach.at_saved(bodies.len())?;
+        Some(NarrowPhase { pieces, pairs, reach, found, frozen, parallelism, ..NarrowPhase::default() })
     }
 
     /// Disables collisions between two bodies.

@@ -49,6 +49,19 @@ impl Reach {
         (self.frame, self.elapsed, self.begun) = (frame, 0.0, false);
     }
 
+    /// The last searches of a saved state, for so many bodies; `None` if they make no sense.
+    pub fn at_saved(self, bodies: usize) -> Option<Reach> {
+        let finite = |of: &Reference| {
+            let (pose, velocity) = (of.pose, of.velocity);
+            let numbers = [pose.angle, velocity.angular, of.time, of.allowance, of.closing];
+            pose.position.is_finite() && velocity.linear.is_finite() && numbers.into_iter().all(f64::is_finite)
+        };
+        let sound = self.bodies.iter().all(finite) && self.levers.iter().all(|lever| lever.is_finite());
+        let known = self.bodies.len() == self.levers.len() && self.levers.len() <= bodies;
+        let timed = self.frame.is_finite() && self.elapsed.is_finite();
+        (sound && known && timed && (!self.begun || self.wanted.len() == self.levers.len())).then_some(self)
+    }
+
     /// Marks the bodies that must be searched before a substep; returns whether there are any.
     pub fn mark(&mut self, bodies: &Bodies, dt: f64, gravity: f64) -> bool {
         let known = self.levers.len();
