@@ -1,9 +1,9 @@
 //! A scene runs the stages it needs and no other.
 
 use unipbd_core::Stage::{
-    self, AdvectSmoke, BeginGroups, Contacts, ContactsAgain, Effects, Emit, FindNeighbors, FinishBodies, FinishGroups,
-    KeepOutOfWalls, MoveBodies, PlaceSamples, Predict, Project, RefreshNeighbors, SettleSamples, StoreDensity,
-    UpdateVelocities,
+    self, AddGridPressure, AdvectSmoke, BeginGroups, Contacts, ContactsAgain, Effects, Emit, FindNeighbors,
+    FinishBodies, FinishGroups, KeepOutOfWalls, MoveBodies, PlaceSamples, Predict, PressureGrid, Project,
+    RefreshNeighbors, SettleSamples, StoreDensity, UpdateVelocities,
 };
 use unipbd_core::constraints::{Needs, Substep};
 use unipbd_core::effects::{Changes, Effect};
@@ -22,6 +22,8 @@ fn assert_stages(text: &str, stages: &[Stage]) {
 }
 
 const WATER: &str = r#"
+[solver]
+pressure_grid = "off"
 [[liquid]]
 name = "water"
 [[block]]
@@ -53,6 +55,13 @@ fn free_flight_has_two_stages() {
 fn grains_between_walls_are_projected_without_neighbours() {
     let walled = format!("{GRAINS}[[half_plane]]\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n");
     assert_stages(&walled, &[Predict, KeepOutOfWalls, UpdateVelocities]);
+}
+
+#[test]
+fn the_pressure_grid_goes_before_the_particles() {
+    let water = WATER.replace("off", "on");
+    let before = [Predict, PressureGrid, FindNeighbors, BeginGroups, Project, StoreDensity, AddGridPressure];
+    assert_stages(&water, &[&before[..], &[UpdateVelocities]].concat());
 }
 
 #[test]

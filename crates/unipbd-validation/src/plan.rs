@@ -7,9 +7,9 @@ use crate::case::Case;
 /// Cases of one liquid in static walls, and near enough ones: they run with the pressure grid too.
 const WITH_GRID: [&str; 4] = ["column", "dam_break", "standing_wave", "elliptical_drop"];
 
-/// The solver with this target.
+/// The particles alone, with this target.
 pub fn settings(target: f64) -> SolverSettings {
-    SolverSettings { target_compression: target, ..SolverSettings::default() }
+    SolverSettings { target_compression: target, pressure_grid: PressureGridUse::Off, ..SolverSettings::default() }
 }
 
 /// One line of the sheet: a case and how it runs.
