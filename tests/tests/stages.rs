@@ -151,7 +151,7 @@ impl Effect for Push {
 
 #[test]
 fn an_effect_from_outside_gets_its_stage_and_acts() {
-    let free = WATER.replacen("[[liquid]]", "gravity = [0.0, 0.0]\n[solver]\nsubsteps = 4\n[[liquid]]", 1);
+    let free = WATER.replacen("[solver]", "gravity = [0.0, 0.0]\n[solver]\nsubsteps = 4", 1);
     let mut solver = build(&scene(&free), 1);
     let id = solver.ids()[0];
     solver.add_effect(Box::new(Push(Vector::new(0.25, 0.0))));
