@@ -1,5 +1,6 @@
 //! The parts of a grid line inside the outline of a body: exact for polygons and discs.
 
+use crate::bytes::held;
 use crate::math::Vector64;
 use crate::rigid::{Body, Pose};
 
@@ -59,6 +60,13 @@ impl Outline {
         }
         crossings.sort_by(f64::total_cmp);
         intervals.extend(crossings.chunks_exact(2).map(|pair| [pair[0], pair[1]]));
+    }
+}
+
+impl Outline {
+    /// Memory held [bytes].
+    pub fn memory_bytes(&self) -> usize {
+        held(&self.corners) + held(&self.crossings)
     }
 }
 

@@ -27,10 +27,10 @@ pub(super) struct Components {
 }
 
 impl Components {
-    /// Finds the closed parts of the fluid.
+    /// Finds the closed parts of the fluid, from couplings that were summed.
     pub fn find(&mut self, couplings: &Couplings, spans: &Spans, stride: usize) {
         self.closed.clear();
-        self.list_runs(couplings, spans, stride);
+        self.list_runs(couplings, spans);
         self.joined.reset(self.runs.len());
         self.join(&couplings.upper, stride);
         self.airy.clear();
@@ -49,14 +49,13 @@ impl Components {
         self.closed.sort_by_key(|(root, run)| (*root, run.start));
     }
 
-    fn list_runs(&mut self, couplings: &Couplings, spans: &Spans, stride: usize) {
+    fn list_runs(&mut self, couplings: &Couplings, spans: &Spans) {
         self.runs.clear();
-        let Couplings { right, upper, air } = couplings;
+        let Couplings { right, total, .. } = couplings;
         spans.each_range(|cells| {
             let mut start = None;
             for cell in cells.clone() {
-                let linked = right[cell] + right[cell - 1] + upper[cell] + upper[cell - stride] + air[cell];
-                if linked > 0.0 {
+                if total[cell] > 0.0 {
                     let first = *start.get_or_insert(cell);
                     if right[cell] == 0.0 || cell + 1 == cells.end {
                         self.runs.push(Run { start: first as u32, end: cell as u32 + 1 });

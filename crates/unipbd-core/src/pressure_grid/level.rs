@@ -17,8 +17,7 @@ pub(super) struct Level {
     pub height: usize,
     pub spans: Spans,
     pub couplings: Couplings,
-    /// Sum of all couplings of a cell; and the relaxation over it.
-    total: Vec<Real>,
+    /// Relaxation over the sum of all couplings of a cell.
     relax: Vec<Real>,
     /// 1 where there is room for a fluid, 0 within walls.
     pub room: Vec<Real>,
@@ -32,6 +31,11 @@ pub(super) struct Level {
 impl Level {
     pub fn stride(&self) -> usize {
         stride(self.width)
+    }
+
+    /// The cells that hold liquid, and those from one row to the next.
+    pub fn size(&self) -> (&Spans, usize) {
+        (&self.spans, self.stride())
     }
 
     pub fn cells(&self) -> usize {
@@ -55,9 +59,9 @@ impl Level {
 
     /// The columns that hold data of the liquid.
     fn columns(&mut self) -> (&Spans, [&mut Vec<Real>; 8]) {
-        let Couplings { right, upper, air } = &mut self.couplings;
-        let of_solver = [&mut self.total, &mut self.relax, &mut self.right_side, &mut self.x, &mut self.other];
-        let [total, relax, right_side, x, other] = of_solver;
+        let Couplings { right, upper, air, total } = &mut self.couplings;
+        let of_solver = [&mut self.relax, &mut self.right_side, &mut self.x, &mut self.other];
+        let [relax, right_side, x, other] = of_solver;
         (&self.spans, [right, upper, air, total, relax, right_side, x, other])
     }
 
@@ -99,7 +103,7 @@ impl Level {
     /// Couplings between coarse cells: half the couplings of their children, because the distance is doubled.
     pub fn couple(&mut self, fine: &Level, parallelism: Parallelism) {
         let (width, stride, of) = (self.width, self.stride(), &fine.couplings);
-        let Couplings { right, upper, air } = &mut self.couplings;
+        let Couplings { right, upper, air, .. } = &mut self.couplings;
         self.spans.each3(right, upper, air, parallelism, |first, right, upper, air| {
             for part in by_row(first..first + right.len(), stride) {
                 let row = part.row * stride;
@@ -113,10 +117,11 @@ impl Level {
         });
     }
 
+    /// Sums the couplings of each cell.
     pub fn add_up(&mut self, parallelism: Parallelism) {
         let stride = self.stride();
-        let Couplings { right, upper, air } = &self.couplings;
-        self.spans.each2(&mut self.total, &mut self.relax, parallelism, |first, total, relax| {
+        let Couplings { right, upper, air, total } = &mut self.couplings;
+        self.spans.each2(total, &mut self.relax, parallelism, |first, total, relax| {
             let count = total.len();
             let (r, l) = (&right[first..][..count], &right[first - 1..][..count]);
             let (u, d) = (&upper[first..][..count], &upper[first - stride..][..count]);
@@ -188,18 +193,14 @@ impl Level {
         });
     }
 
-    /// Applies the couplings to a field.
-    pub fn image(&self, x: &[Real], out: &mut [Real], parallelism: Parallelism) {
-        self.stencil(x, out, parallelism, |x, total, coupled, _| total * x - coupled, [&self.relax; 2]);
-    }
-
     /// Writes the residual of the right side, scaled for the coarser grid, into `other`.
     pub fn residual(&mut self, parallelism: Parallelism) {
         let mut other = std::mem::take(&mut self.other);
         let left = |x: Real, total: Real, coupled: Real, [scale, right_side]: [Real; 2]| {
             scale * (right_side - (total * x - coupled))
         };
-        self.stencil(&self.x, &mut other, parallelism, left, [&self.scale, &self.right_side]);
+        let (size, columns) = (self.size(), [&self.scale[..], &self.right_side]);
+        self.couplings.stencil(&self.x, &mut other, size, parallelism, left, columns);
         self.other = other;
     }
 
@@ -220,41 +221,15 @@ impl Level {
         };
         for _ in 0..sweeps {
             let mut other = std::mem::take(&mut self.other);
-            self.stencil(&self.x, &mut other, parallelism, better, [&self.relax, &self.right_side]);
+            let (size, columns) = (self.size(), [&self.relax[..], &self.right_side]);
+            self.couplings.stencil(&self.x, &mut other, size, parallelism, better, columns);
             self.other = std::mem::replace(&mut self.x, other);
         }
     }
 
-    /// `out = value(x, total, sum of couplings times neighbours, columns)` for each cell of the liquid.
-    #[inline(always)]
-    fn stencil(
-        &self,
-        x: &[Real],
-        out: &mut [Real],
-        parallelism: Parallelism,
-        value: impl Fn(Real, Real, Real, [Real; 2]) -> Real + Sync,
-        columns: [&[Real]; 2],
-    ) {
-        let (stride, [a, b]) = (self.stride(), columns);
-        let (right, upper, total) = (&self.couplings.right, &self.couplings.upper, &self.total);
-        self.spans.each(out, parallelism, |first, out| {
-            let count = out.len();
-            let (xc, xr, xl) = (&x[first..][..count], &x[first + 1..][..count], &x[first - 1..][..count]);
-            let (xu, xd) = (&x[first + stride..][..count], &x[first - stride..][..count]);
-            let (cr, cl) = (&right[first..][..count], &right[first - 1..][..count]);
-            let (cu, cd) = (&upper[first..][..count], &upper[first - stride..][..count]);
-            let (total, a, b) = (&total[first..][..count], &a[first..][..count], &b[first..][..count]);
-            for k in 0..count {
-                let coupled = (cr[k] * xr[k] + cl[k] * xl[k]) + (cu[k] * xu[k] + cd[k] * xd[k]);
-                out[k] = value(xc[k], total[k], coupled, [a[k], b[k]]);
-            }
-        });
-    }
-
     pub fn memory_bytes(&self) -> usize {
-        let Couplings { right, upper, air } = &self.couplings;
-        held_by(&[right, upper, air, &self.room, &self.scale])
-            + held_by(&[&self.total, &self.relax, &self.right_side, &self.x, &self.other])
+        self.couplings.memory_bytes()
+            + held_by(&[&self.room, &self.scale, &self.relax, &self.right_side, &self.x, &self.other])
             + self.spans.memory_bytes()
     }
 }

@@ -1,6 +1,6 @@
-//! A coarse projection before the particle pass: a grid of cells two spacings wide carries the smooth part of the
-//! pressure, and the multipliers of the particles hold only the remainder. The number of substeps then follows from
-//! the speed alone, not from the depth.
+//! The pressure grid: before the particle pass, a grid of cells two spacings wide carries the smooth part of the
+//! pressure of fluids and bodies, and the multipliers of the particles hold only the remainder. The number of substeps
+//! then follows from the speed alone, not from the depth.
 //!
 //! A staggered grid (Harlow & Welch 1965) gives changes of velocity to the particles (Brackbill & Ruppel 1986), with
 //! ghost pressures at the free surface (Gibou et al. 2002) and parts of faces at walls (Batty et al. 2007). A second
@@ -17,7 +17,6 @@ mod level;
 mod mixture;
 mod multigrid;
 mod openings;
-mod operator;
 mod readings;
 mod solids;
 mod spans;
@@ -32,13 +31,13 @@ use crate::particles::{Particles, displaced};
 use crate::rigid::{Bodies, Twist};
 use crate::walls::Walls;
 use components::Components;
+use couplings::Couplings;
 use lattice::Lattice;
 use level::Level;
 pub(crate) use mixture::Mixture;
 pub(crate) use multigrid::Accuracy;
 use multigrid::{Multigrid, Problem};
 use openings::Openings;
-use operator::Operator;
 pub(crate) use solids::Immersed;
 use solids::{Solids, Units, twist};
 use system::System;
@@ -69,7 +68,8 @@ pub(crate) struct PressureGrid {
     multigrid: Multigrid,
     components: Components,
     solids: Solids,
-    operator: Operator,
+    /// Couplings of the fluid, without those that stand for bodies: only where there are bodies.
+    fluid: Couplings,
 }
 
 impl PressureGrid {
@@ -87,7 +87,7 @@ impl PressureGrid {
             multigrid: Multigrid::default(),
             components: Components::default(),
             solids: Solids::default(),
-            operator: Operator::default(),
+            fluid: Couplings::default(),
         }
     }
 
@@ -104,14 +104,8 @@ impl PressureGrid {
         let mut solve = |accuracy: Accuracy, of_pressure: bool| {
             let mut solution = std::mem::take(if of_pressure { &mut system.pressure } else { &mut system.potential });
             let right_side = if of_pressure { &system.divergence } else { &system.excess };
-            let problem = Pressed {
-                accuracy,
-                system,
-                components: &self.components,
-                solids: &self.solids,
-                operator: &self.operator,
-                stride: self.lattice.stride(),
-            };
+            let problem =
+                Pressed { accuracy, system, components: &self.components, solids: &self.solids, fluid: &self.fluid };
             multigrid.solve(right_side, &mut solution, &problem, parallelism);
             *(if of_pressure { &mut system.pressure } else { &mut system.potential }) = solution;
         };
@@ -154,11 +148,17 @@ impl PressureGrid {
         multigrid.find(&system.depth);
         system.read_flow(fields, &self.mixture, multigrid.spans(), parallelism);
         let (spans, couplings) = multigrid.finest_couplings();
-        system.couple(lattice, openings, (spans, &mut *couplings), parallelism);
+        system.couple(lattice, openings, (spans, couplings), parallelism);
+        multigrid.add_up(parallelism);
+        let (_, couplings) = multigrid.finest_couplings();
         if solids.any() {
-            self.operator.copy(couplings, spans, stride, parallelism);
+            self.fluid.take(couplings);
         }
-        system.mask(solids, stride, &self.operator, couplings);
+        system.mask(solids, stride, &self.fluid, couplings);
+        if solids.any() {
+            multigrid.add_up(parallelism);
+        }
+        let (spans, couplings) = multigrid.finest_couplings();
         self.components.find(couplings, spans, stride);
         multigrid.coarsen(parallelism);
         let taken_back = (DENSITY_RELAXATION * dt / self.frame_time) as Real;
@@ -246,7 +246,7 @@ impl PressureGrid {
             + self.multigrid.memory_bytes()
             + self.components.memory_bytes()
             + self.solids.memory_bytes()
-            + self.operator.memory_bytes()
+            + self.fluid.memory_bytes()
     }
 }
 
@@ -256,8 +256,7 @@ struct Pressed<'a> {
     system: &'a System,
     components: &'a Components,
     solids: &'a Solids,
-    operator: &'a Operator,
-    stride: usize,
+    fluid: &'a Couplings,
 }
 
 impl Problem for Pressed<'_> {
@@ -273,13 +272,12 @@ impl Problem for Pressed<'_> {
     }
 
     fn image(&self, finest: &Level, (x, out): (&[Real], &mut [Real]), parallelism: Parallelism) {
-        if self.solids.any() {
-            let of = (self.solids, |cell| self.system.counts(cell));
-            let size = (&finest.spans, self.stride);
-            self.operator.image(of, (x, out), size, parallelism);
-        } else {
-            finest.image(x, out, parallelism);
+        if !self.solids.any() {
+            return finest.couplings.image(x, out, finest.size(), parallelism);
         }
+        self.fluid.image(x, out, finest.size(), parallelism);
+        self.system.clear_masked(out);
+        self.solids.respond(x, out, finest.stride(), |cell| self.system.counts(cell));
     }
 }
 

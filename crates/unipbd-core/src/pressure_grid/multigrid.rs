@@ -69,7 +69,8 @@ impl Multigrid {
         });
     }
 
-    /// Finds the liquid cells from the depths on the finest grid. The caller then sets the couplings of that grid.
+    /// Finds the liquid cells from the depths on the finest grid. The caller then sets the couplings of that grid, and
+    /// [adds them up](Self::add_up).
     pub fn find(&mut self, depth: &[Real]) {
         // The image is read only where it was just written.
         self.levels[0].spans.clear(&mut self.direction);
@@ -87,9 +88,13 @@ impl Multigrid {
         (&finest.spans, &mut finest.couplings)
     }
 
+    /// Sums the couplings of the finest grid, once the caller has set them.
+    pub fn add_up(&mut self, parallelism: Parallelism) {
+        self.levels[0].add_up(parallelism);
+    }
+
     /// Couples the cells of all coarser grids.
     pub fn coarsen(&mut self, parallelism: Parallelism) {
-        self.levels[0].add_up(parallelism);
         self.pairs(|finer, coarser| {
             coarser.couple(finer, parallelism);
             coarser.add_up(parallelism);

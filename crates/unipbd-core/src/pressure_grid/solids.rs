@@ -220,7 +220,7 @@ impl Solids {
 
     /// Memory held [bytes].
     pub fn memory_bytes(&self) -> usize {
-        held(&self.solids) + held(&self.faces) + held(&self.intervals) + held(&self.parts)
+        held(&self.solids) + held(&self.faces) + held(&self.intervals) + held(&self.parts) + self.outline.memory_bytes()
     }
 }
 

@@ -5,7 +5,6 @@ use super::flow::Flow;
 use super::lattice::Lattice;
 use super::mixture::Mixture;
 use super::openings::Openings;
-use super::operator::Operator;
 use super::solids::Solids;
 use super::spans::{BLOCK, Spans};
 use super::surface::{depth_of, ghost};
@@ -171,7 +170,7 @@ impl System {
 
     /// Finds the cells inside bodies from the couplings of the fluid, and couples the cells a body covers as if it were
     /// fluid of its density: for the preconditioner.
-    pub fn mask(&mut self, solids: &Solids, stride: usize, operator: &Operator, out: &mut Couplings) {
+    pub fn mask(&mut self, solids: &Solids, stride: usize, fluid: &Couplings, out: &mut Couplings) {
         self.masked.clear();
         if !solids.any() {
             return;
@@ -179,7 +178,7 @@ impl System {
         self.masked.resize(self.depth.len(), false);
         for &cell in &self.touched {
             let cell = cell as usize;
-            self.masked[cell] = self.depth[cell] >= 0.0 && operator.total[cell] < MASKED;
+            self.masked[cell] = self.depth[cell] >= 0.0 && fluid.total[cell] < MASKED;
         }
         for solid in &solids.solids {
             for face in solids.faces_of(solid) {
