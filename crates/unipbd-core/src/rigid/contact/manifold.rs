@@ -291,11 +291,15 @@ impl Contact {
             return None;
         }
         let normal = complementarity::solve(&self.effective_mass.normal, excess, old, [0.0; 2]);
-        let (p, q, change) = (&self.points[0], &self.points[1], [normal[0] - old[0], normal[1] - old[1]]);
-        let (turns_a, turns_b) = self.effective_mass.turning;
+        Some(Pressed { a, b, normal, turned: self.turned_by([normal[0] - old[0], normal[1] - old[1]]) })
+    }
+
+    /// Rotation of the two bodies by changes of the normal impulses, with the split masses.
+    pub(super) fn turned_by(&self, change: [f64; 2]) -> (f64, f64) {
+        let ([p, q], (turns_a, turns_b)) = (&self.points, self.effective_mass.turning);
         let turned_a = turns_a * (p.normal_a * change[0] + q.normal_a * change[1]);
         let turned_b = turns_b * (p.normal_b * change[0] + q.normal_b * change[1]);
-        Some(Pressed { a, b, normal, turned: (turned_a, turned_b) })
+        (turned_a, turned_b)
     }
 
     /// The tangential impulse that stops the sliding at a point, after the normal impulses.

@@ -58,11 +58,8 @@ impl Contact {
             *lower = -point.normal_impulse / dt;
         }
         let total = complementarity::solve(&coupling, excess, old, lower);
-        let (p, q, change) = (&self.points()[0], self.points().last(), [total[0] - old[0], total[1] - old[1]]);
-        let q = q.unwrap_or(p);
-        let (turns_a, turns_b) = self.effective_mass.turning;
-        let turned_a = turns_a * (p.normal_a * change[0] + q.normal_a * change[1]);
-        let turned_b = turns_b * (p.normal_b * change[0] + q.normal_b * change[1]);
+        let change = [total[0] - old[0], total[1] - old[1]];
+        let (turned_a, turned_b) = self.turned_by(change);
         let all: f64 = self.points().iter().zip(total).map(|(point, add)| point.normal_impulse / dt + add).sum();
         let mut push = Push::default();
         for (k, point) in self.points().iter().enumerate() {
