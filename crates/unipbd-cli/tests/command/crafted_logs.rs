@@ -1,24 +1,11 @@
 //! Logs that were made by hand: a clear error, and no more memory than the file's size times a constant.
 
+use crate::records::{ATTACHMENT, CHUNK, records, with_records};
 use crate::support::Place;
 
-const MAGIC: usize = 8;
 const CHANNEL: u8 = 0x04;
-const CHUNK: u8 = 0x06;
-const ATTACHMENT: u8 = 0x09;
 const METADATA: u8 = 0x0c;
 const DATA_END: u8 = 0x0f;
-
-/// The records of a log behind its first magic: kind and body.
-fn records(log: &[u8]) -> Vec<(u8, Vec<u8>)> {
-    let (mut rest, mut found) = (&log[MAGIC..log.len() - MAGIC], Vec::new());
-    while let Some((prefix, body)) = rest.split_first_chunk::<9>() {
-        let length = u64::from_le_bytes(prefix[1..].try_into().unwrap()) as usize;
-        found.push((prefix[0], body[..length].to_vec()));
-        rest = &body[length..];
-    }
-    found
-}
 
 /// A log of `drop.toml` in which the first record of a kind is changed.
 fn crafted(kind: u8, change: impl FnOnce(&mut Vec<u8>)) -> Place {
@@ -27,16 +14,10 @@ fn crafted(kind: u8, change: impl FnOnce(&mut Vec<u8>)) -> Place {
     let log = std::fs::read(place.path("drop.mcap")).unwrap();
     let mut records = records(&log);
     change(&mut records.iter_mut().find(|(found, _)| *found == kind).unwrap().1);
-    let mut bytes = log[..MAGIC].to_vec();
-    for (kind, mut body) in records {
-        if kind == DATA_END {
-            body.fill(0); // no checksum of what was changed
-        }
-        bytes.push(kind);
-        bytes.extend((body.len() as u64).to_le_bytes());
-        bytes.extend(body);
+    for (_, body) in records.iter_mut().filter(|(kind, _)| *kind == DATA_END) {
+        body.fill(0); // no checksum of what was changed
     }
-    bytes.extend(&log[log.len() - MAGIC..]);
+    let bytes = with_records(&log, records);
     std::fs::write(place.path("crafted.mcap"), bytes).unwrap();
     place
 }

@@ -55,26 +55,21 @@ fn a_run_that_diverges_exits_4_and_keeps_its_log() {
     place.run(&["info", "drop.mcap"]).exits(0);
 }
 
-/// Whether Ctrl-C is ignored here, as in the background jobs of a script: what is started here ignores it too.
+/// Whether a signal of this number is ignored here, as in the background jobs of a script: what is started here ignores
+/// it too.
 #[cfg(unix)]
-fn interrupts_are_ignored() -> bool {
-    ignores(2)
-}
-
-/// Whether a signal of this number is ignored here.
-#[cfg(unix)]
-pub fn ignores(signal: u32) -> bool {
+fn ignores(signal: u32) -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     let ignored = status.lines().find_map(|line| line.strip_prefix("SigIgn:"));
     ignored.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).is_some_and(|mask| mask >> (signal - 1) & 1 != 0)
 }
 
+/// How a run ends by a signal; `None` where this process ignores it.
 #[cfg(unix)]
-#[test]
-fn ctrl_c_finishes_the_frame_closes_the_log_and_exits_130() {
-    if interrupts_are_ignored() {
-        println!("skipped: this process ignores Ctrl-C");
-        return;
+pub fn ends_with(name: &str, number: u32, code: i32) -> Option<Ended> {
+    if ignores(number) {
+        println!("skipped: this process ignores {name}");
+        return None;
     }
     let place = Place::new();
     let mut child = place
@@ -84,12 +79,20 @@ fn ctrl_c_finishes_the_frame_closes_the_log_and_exits_130() {
         .spawn()
         .unwrap();
     wait_for_frames(&place, &mut child);
-    signal(&child, "-INT");
-    let ended = Ended(child.wait_with_output().unwrap()).exits(130);
-    assert!(ended.stderr().contains("interrupted"), "{}", ended.stderr());
+    signal(&child, name);
+    let ended = Ended(child.wait_with_output().unwrap()).exits(code);
     assert_eq!(place.files(), ["drop.mcap", "drop.toml"], "the log has its final name");
     let log = place.run(&["info", "drop.mcap", "--json"]).exits(0).objects().remove(0);
+    assert_eq!(log["truncated"], false, "{log}");
     assert!(log["frames"].as_u64().unwrap() > 1, "{log}");
+    Some(ended)
+}
+
+#[cfg(unix)]
+#[test]
+fn ctrl_c_finishes_the_frame_closes_the_log_and_exits_130() {
+    let Some(ended) = ends_with("-INT", 2, 130) else { return };
+    assert!(ended.stderr().contains("interrupted"), "{}", ended.stderr());
 }
 
 #[cfg(unix)]

@@ -14,6 +14,8 @@ mod output;
 mod partial_logs;
 mod pictures;
 mod quantities;
+#[path = "../shared/records.rs"]
+mod records;
 mod signals;
 mod support;
 mod threads_rule;

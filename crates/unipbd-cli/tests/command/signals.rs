@@ -1,31 +1,8 @@
 //! Signals that ask for an end: the frame is finished, the log closed, the exit code 128 and the signal's number.
 #![cfg(unix)]
 
-use std::process::Stdio;
-
-use crate::ending::{ignores, signal, wait_for_frames};
-use crate::support::{Ended, Place};
-
-fn ends_with(name: &str, number: u32, code: i32) {
-    if ignores(number) {
-        println!("skipped: this process ignores {name}");
-        return;
-    }
-    let place = Place::new();
-    let mut child = place
-        .start(&["drop.toml", "--json", "--duration", "3000"])
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
-    wait_for_frames(&place, &mut child);
-    signal(&child, name);
-    Ended(child.wait_with_output().unwrap()).exits(code);
-    assert_eq!(place.files(), ["drop.mcap", "drop.toml"], "the log has its final name");
-    let log = place.run(&["info", "drop.mcap", "--json"]).exits(0).objects().remove(0);
-    assert_eq!(log["truncated"], false, "{log}");
-    assert!(log["frames"].as_u64().unwrap() > 1, "{log}");
-}
+use crate::ending::{ends_with, signal, wait_for_frames};
+use crate::support::Place;
 
 #[test]
 fn sigterm_closes_the_log_and_exits_143() {

@@ -10,6 +10,7 @@ use unipbd_cli::simulation::Simulation;
 use unipbd_core::BuildOptions;
 
 use crate::harness::{Dice, fuzz, spoil};
+use crate::records::{ATTACHMENT, CHUNK, records, with_records};
 
 const SCENE: &str = r#"
 name = "log"
@@ -66,21 +67,6 @@ fn recorded() -> Vec<u8> {
     output.0.lock().unwrap().get_ref().clone()
 }
 
-const MAGIC: usize = 8;
-const CHUNK: u8 = 0x06;
-const ATTACHMENT: u8 = 0x09;
-
-/// The records behind the first magic: kind and body.
-fn records(log: &[u8]) -> Vec<(u8, Vec<u8>)> {
-    let (mut rest, mut found) = (&log[MAGIC..log.len() - MAGIC], Vec::new());
-    while let Some((prefix, body)) = rest.split_first_chunk::<9>() {
-        let length = u64::from_le_bytes(prefix[1..].try_into().unwrap()) as usize;
-        found.push((prefix[0], body[..length].to_vec()));
-        rest = &body[length..];
-    }
-    found
-}
-
 /// Changes what is in a chunk, and packs it again with the right checksum.
 fn respoil_chunk(body: &[u8], dice: &mut Dice) -> Vec<u8> {
     let packed = &body[8 + 8 + 8 + 4 + 4 + 4 + 8..];
@@ -121,17 +107,11 @@ fn changed(log: &[u8], dice: &mut Dice) -> Vec<u8> {
         spoil(&mut bytes, dice);
         return bytes;
     }
-    let records = records(log);
+    let mut records = records(log);
     let victim = dice.below(records.len());
-    let mut bytes = log[..MAGIC].to_vec();
-    for (index, (kind, body)) in records.iter().enumerate() {
-        let body = if index == victim { respoil(*kind, body, dice) } else { body.clone() };
-        bytes.push(*kind);
-        bytes.extend((body.len() as u64).to_le_bytes());
-        bytes.extend(body);
-    }
-    bytes.extend(&log[log.len() - MAGIC..]);
-    bytes
+    let (kind, body) = &mut records[victim];
+    *body = respoil(*kind, body, dice);
+    with_records(log, records)
 }
 
 #[test]

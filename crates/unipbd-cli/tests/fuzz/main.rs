@@ -4,4 +4,6 @@
 #[path = "../../../../tests/fuzz/harness.rs"]
 mod harness;
 mod logs;
+#[path = "../shared/records.rs"]
+mod records;
 mod scenes;
