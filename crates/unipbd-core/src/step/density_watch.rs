@@ -21,7 +21,8 @@ const ONE_PLACE: f64 = 1e-3;
 impl World {
     /// At the end of a frame: warns of each material once.
     pub(super) fn watch_density(&mut self) {
-        if !self.plan.has_density() {
+        // A frame in which all rows sleep changes no density, and must cost nothing.
+        if !self.plan.has_density() || self.sleeps() {
             return;
         }
         let mut errors = std::mem::take(&mut self.material_errors);

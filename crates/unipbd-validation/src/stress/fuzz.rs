@@ -116,7 +116,7 @@ pub fn random_scene(seed: u64) -> Scene {
     if seed.is_multiple_of(2) { with_pressure_grid(scene) } else { scene }
 }
 
-/// The scene with the pressure grid, if that supports it. Nothing is drawn: all others stay what they were.
+/// The scene with the pressure grid, if that supports it. It draws no random number, so all other scenes stay the same.
 fn with_pressure_grid(scene: Scene) -> Scene {
     let solver = SolverSettings { pressure_grid: PressureGridUse::On, ..scene.solver.clone() };
     let grid = Scene { solver, ..scene.clone() };
