@@ -121,7 +121,7 @@ fn a_shape_floats_at_its_draft() {
 
 #[test]
 fn a_soft_shape_deforms_and_comes_back() {
-    let text = "[[half_plane]]\npoint = [0, 0]\nnormal = [0, 1]\n[[body]]\nsolver = 'shape_matching'\nstiffness = 0.2\nsize = [0.6, 0.6]\nposition = [0, 1.5]\n";
+    let text = "[[half_plane]]\npoint = [0, 0]\nnormal = [0, 1]\n[[body]]\nsolver = 'shape_matching'\ncompliance = 4e-7\nsize = [0.6, 0.6]\nposition = [0, 1.5]\n";
     let mut solver = boxed(text);
     let mut worst = 0.0f64;
     run(&mut solver, 120, |solver| worst = worst.max(deformation(solver, 0, 0.3)));

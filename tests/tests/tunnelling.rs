@@ -59,7 +59,7 @@ fn sides() -> [[[f64; 2]; 2]; 4] {
 
 fn obstacles(mut scene: Scene) -> Scene {
     let obstacle =
-        |[min, max]: [[f64; 2]; 2]| Obstacle { name: String::new(), min, max, friction: 0.0, slip: Default::default() };
+        |[min, max]: [[f64; 2]; 2]| Obstacle { name: String::new(), min, max, friction: None, slip: Default::default() };
     scene.obstacle = sides().map(obstacle).to_vec();
     scene
 }
@@ -83,7 +83,7 @@ fn half_planes(mut scene: Scene) -> Scene {
     for k in 0..3 {
         let inward = Vector64::from_angle(0.3 + TAU / 3.0 * f64::from(k));
         let point = center - inward * 0.5 * HEIGHT;
-        scene.half_plane.push(HalfPlane { friction: 0.2, ..HalfPlane::new(point.into(), inward.into()) });
+        scene.half_plane.push(HalfPlane { friction: Some(0.2), ..HalfPlane::new(point.into(), inward.into()) });
     }
     scene
 }

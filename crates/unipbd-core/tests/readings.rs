@@ -54,7 +54,7 @@ fn pressures_beside_an_obstacle_are_those_of_the_depth() {
     let mut scene = pool();
     scene.tank[0].max[0] = 3.2;
     let (min, max) = ([1.6, 0.0], [3.2, 4.0]);
-    scene.obstacle.push(Obstacle { name: String::new(), min, max, friction: 0.0, slip: Slip::Free });
+    scene.obstacle.push(Obstacle { name: String::new(), min, max, friction: None, slip: Slip::Free });
     let whole = over_hydrostatics(&mut built(&scene), |_| true);
     assert!((whole - 1.0).abs() < 0.02, "{whole}");
 }

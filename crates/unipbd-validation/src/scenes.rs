@@ -25,7 +25,7 @@ pub fn pool(size: (f64, f64), width: f64, trial: &Trial) -> Scene {
 
 /// A floor with this friction.
 pub fn floor(friction: f64) -> HalfPlane {
-    HalfPlane { friction, ..HalfPlane::new([0.0, 0.0], [0.0, 1.0]) }
+    HalfPlane { friction: Some(friction), ..HalfPlane::new([0.0, 0.0], [0.0, 1.0]) }
 }
 
 /// A body with an outline of its own to be set, and a name.

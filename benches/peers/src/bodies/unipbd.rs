@@ -24,8 +24,8 @@ pub fn engine(setup: &Setup, (substeps, iterations): (u32, u32)) -> Result<Box<d
 }
 
 fn scene(setup: &Setup, substeps: u32, iterations: u32) -> Scene {
-    let tank = |width: f64| Tank { friction: FRICTION, ..Tank::new([0.0, 0.0], [width, 1000.0]) };
-    let floor = HalfPlane { friction: FRICTION, ..HalfPlane::new([0.0, 0.0], [0.0, 1.0]) };
+    let tank = |width: f64| Tank { friction: Some(FRICTION), ..Tank::new([0.0, 0.0], [width, 1000.0]) };
+    let floor = HalfPlane { friction: Some(FRICTION), ..HalfPlane::new([0.0, 0.0], [0.0, 1.0]) };
     Scene {
         spacing: SIZE / 10.0,
         gravity: [0.0, -GRAVITY],

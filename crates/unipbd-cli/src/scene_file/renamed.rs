@@ -38,6 +38,11 @@ const RENAMED: &[Renamed] = &[
         new: &["solver.pressure_grid"],
         reason: "\"on\", \"off\" or \"auto\" in place of a number of steps",
     },
+    Renamed {
+        old: "body.stiffness",
+        new: &["body.compliance"],
+        reason: "it is in m/N, 0 is rigid, and gives the same shape at every number of substeps",
+    },
     Renamed { old: "contacts.mass_scaling", new: &["legacy.mass_scaling"], reason: FOR_COMPARISON },
     Renamed { old: "gas.viscosity", new: &["gas.xsph", "gas.kinematic_viscosity"], reason: TWO_VISCOSITIES },
 ];

@@ -26,7 +26,7 @@ const SCENES: [(&str, &str); 6] = [
         "soft and ropes",
         "spacing = 0.02\n[solver]\nsubsteps = 3\nsettle_substeps = 2\n[[liquid]]\nname = \"water\"\n[[solid]]\n\
       name = \"hemp\"\n[[block]]\nmaterial = \"water\"\nmin = [0.0, 0.0]\nmax = [1.4, 1.3]\n[[tank]]\nmin = [0.0, 0.0]\n\
-      max = [2.0, 2.0]\n[[body]]\nsolver = \"shape_matching\"\nstiffness = 0.5\nradius = 0.15\nposition = [1.7, 0.6]\n\
+      max = [2.0, 2.0]\n[[body]]\nsolver = \"shape_matching\"\ncompliance = 1e-6\nradius = 0.15\nposition = [1.7, 0.6]\n\
       [[rope]]\nmaterial = \"hemp\"\nfrom = [0.3, 1.9]\nto = [1.2, 1.9]\n",
     ),
     (

@@ -1,21 +1,13 @@
 //! Bodies, joints and walls of a scene in the form that the contact solver takes.
 
 use super::carve::Solid;
+use crate::coupling::RigidBodies;
 use crate::legacy;
 use crate::math::Vector64;
-use crate::rigid::Wall;
-use crate::rigid::contact::{ContactSettings, Contacts, DistanceRule, Joint, JointKind, Motor, SleepSettings};
-use crate::rigid::{
-    Bodies, BodySpec, CollisionFilter, Elasticity, MassSpec, Motion, Pose, Repeat, Rotation, Surface, Twist, Waypoint,
-};
-use crate::scene::{
-    BodyDescription, BodySolver, ContactDescription, JointDescription, JointRule, MotionDescription, Rope,
-    RotationRule, Scene, Side,
-};
-use crate::shapes::Shape;
-
-/// Corners of a disc whose shape is matched.
-const ROUND: usize = 48;
+use crate::rigid::contact::{ContactSettings, Contacts, DistanceRule, Joint, JointKind, SleepSettings};
+use crate::rigid::{Bodies, BodySpec, Surface, Wall};
+use crate::rigid::{joint, specification, strength};
+use crate::scene::{BodyDescription, ContactDescription, Scene, Side, body_friction};
 
 /// All bodies of a scene, and the contacts and joints between them and its walls.
 pub(super) fn build(scene: &Scene) -> (Bodies, Contacts) {
@@ -26,24 +18,26 @@ pub(super) fn build(scene: &Scene) -> (Bodies, Contacts) {
             let _ = bodies.add(spec);
         }
     }
-    let ContactDescription { method, relaxation, iterations, sleep, sleep_speed, sleep_delay } = scene.contacts;
-    let sleep = sleep.then_some(SleepSettings { speed: sleep_speed, delay: sleep_delay });
-    let settings = ContactSettings { method, relaxation, iterations, sleep, ..ContactSettings::default() };
-    let mut contacts = match scene.legacy.changes_contacts() {
-        false => Contacts::new(&walls(scene), settings),
-        true => legacy::contacts(&walls(scene), settings, &scene.legacy),
-    };
+    let mut contacts = contacts(scene);
     for description in &scene.joint {
         if let Some(joint) = joint(description, &bodies) {
-            contacts.add_joint(joint, description.collide_connected());
-        }
-    }
-    for rope in &scene.rope {
-        if let Some(joint) = rope_joint(rope, scene.spacing, &bodies) {
-            contacts.add_joint(joint, true);
+            let index = contacts.add_joint(joint, description.collide_connected());
+            contacts.describe_joint(index, &description.name, strength(description));
         }
     }
     (bodies, contacts)
+}
+
+/// The contact solver of a scene, without joints.
+pub(super) fn contacts(scene: &Scene) -> Contacts {
+    let ContactDescription { method, relaxation, iterations, friction_rule, sleep, sleep_speed, sleep_delay } =
+        scene.contacts;
+    let sleep = sleep.then_some(SleepSettings { speed: sleep_speed, delay: sleep_delay });
+    let settings = ContactSettings { method, relaxation, iterations, friction_rule, sleep, ..ContactSettings::default() };
+    match scene.legacy.changes_contacts() {
+        false => Contacts::new(&walls(scene), settings),
+        true => legacy::contacts(&walls(scene), settings, &scene.legacy),
+    }
 }
 
 /// All bodies where they start.
@@ -63,110 +57,30 @@ fn specifications(description: &BodyDescription, number: usize) -> Vec<BodySpec>
     instances.map(|(name, position)| specification(description, name, position)).collect()
 }
 
-fn specification(description: &BodyDescription, name: String, position: Vector64) -> BodySpec {
-    let layers = |list: &[u8]| list.iter().fold(0, |mask, &layer| mask | 1_u32 << (layer & 31));
-    BodySpec {
-        name,
-        kind: description.kind,
-        shape: match (description.solver, description.radius) {
-            // The outline of a deformable body is drawn as it is bent.
-            (BodySolver::ShapeMatching, Some(radius)) => Shape::regular(ROUND, radius),
-            _ => description.shape(),
-        },
-        pose: Pose { position, angle: description.angle_deg.to_radians() },
-        velocity: Twist { linear: description.velocity.into(), angular: description.spin_deg.to_radians() },
-        mass: description.mass.map_or(MassSpec::Density(description.density), MassSpec::Mass),
-        surface: Surface {
-            static_friction: description.friction,
-            kinetic_friction: description.kinetic_friction.unwrap_or(description.friction),
-            rolling_friction: description.rolling_friction,
-            restitution: description.restitution,
-            speed: description.surface_speed,
-        },
-        filter: CollisionFilter {
-            layers: layers(&description.layers),
-            collides_with: description.collides_with.as_deref().map_or(u32::MAX, layers),
-        },
-        rotation: match description.rotation {
-            RotationRule::Free => Rotation::Free,
-            RotationRule::Locked => Rotation::Locked,
-        },
-        matched: (description.solver == BodySolver::ShapeMatching)
-            .then_some(Elasticity { stiffness: description.stiffness, damping: description.damping }),
-        gravity_factor: description.gravity_factor,
-        motion: description.motion.as_ref().map_or(Motion::Still, motion),
-    }
-}
-
-fn motion(description: &MotionDescription) -> Motion {
-    if !description.path.is_empty() {
-        let waypoint = |station: &crate::scene::Station| Waypoint {
-            time: station.time,
-            offset: station.offset.into(),
-            turn: station.turn_deg.to_radians(),
+/// Adds the distance joints that keep bodies at the ends of ropes within the rope's length of its other end: another
+/// body, or the point that is held or carried there. `ends` are the ids of the first and last point of each rope.
+pub(super) fn join_ropes(scene: &Scene, ends: &[[u32; 2]], rigid: &mut RigidBodies) {
+    for (rope, ends) in scene.rope.iter().zip(ends) {
+        let find = |name: &Option<String>| {
+            let name = name.as_ref()?;
+            rigid.views().iter().position(|body| body.name == *name).map(|id| id as u32)
         };
-        let repeat = if description.repeat_path { Repeat::Loop } else { Repeat::Once };
-        return Motion::Path { waypoints: description.path.iter().map(waypoint).collect(), repeat };
+        let (first, last) = (find(&rope.from_body), find(&rope.body));
+        let (from, to) = (Vector64::from(rope.from), Vector64::from(rope.to));
+        let Some((body, at)) = last.map(|body| (body, to)).or(first.map(|body| (body, from))) else { continue };
+        let other = first.filter(|_| last.is_some());
+        let (opposite, carrier) = if last.is_some() { (from, ends[0]) } else { (to, ends[1]) };
+        let bodies = &rigid.bodies;
+        let length = rope.full_length();
+        let compliance = rope.compliance * rope.pieces(scene.spacing);
+        let kind = JointKind::Distance { length, compliance, damping: 0.0, rule: DistanceRule::AtMost };
+        let other_anchor = other.map_or(opposite, |id| bodies.pose(id).apply_inverse(opposite));
+        let joint = Joint { body, other, anchor: bodies.pose(body).apply_inverse(at), other_anchor, kind };
+        let index = rigid.contacts.add_joint(joint, true);
+        if other.is_none() {
+            rigid.carry(index, carrier);
+        }
     }
-    if description.frequency != 0.0 {
-        return Motion::Oscillate {
-            amplitude: description.amplitude.into(),
-            swing: description.swing_deg.to_radians(),
-            frequency: description.frequency,
-            phase: description.phase_deg.to_radians(),
-        };
-    }
-    Motion::Steady { velocity: description.velocity.into(), spin: description.spin_deg.to_radians() }
-}
-
-fn joint(description: &JointDescription, bodies: &Bodies) -> Option<Joint> {
-    let find = |name: &str| bodies.views().iter().position(|body| body.name == name).map(|id| id as u32);
-    let local = |id: u32, point: Vector64| {
-        let pose = bodies.pose(id);
-        Vector64::from_angle(-pose.angle).rotate(point - pose.position)
-    };
-    let body = find(&description.body)?;
-    let other = match &description.other {
-        Some(name) => Some(find(name)?),
-        None => None,
-    };
-    let at = Vector64::from(description.at);
-    let other_at = description.other_at.map_or(at, Vector64::from);
-    let rod = |rule| JointKind::Distance {
-        length: description.length.unwrap_or((at - other_at).length()),
-        compliance: description.compliance,
-        rule,
-    };
-    Some(Joint {
-        body,
-        other,
-        anchor: local(body, at),
-        other_anchor: other.map_or(other_at, |id| local(id, other_at)),
-        kind: match description.kind {
-            JointRule::Hinge => JointKind::Hinge {
-                motor: description
-                    .motor_speed_deg
-                    .map(|speed| Motor { speed: speed.to_radians(), max_torque: description.motor_torque }),
-            },
-            JointRule::Rod => rod(DistanceRule::Exact),
-            JointRule::Rope => rod(DistanceRule::AtMost),
-        },
-    })
-}
-
-/// The distance joint that keeps a body at the end of a rope within the rope's length of the held end.
-fn rope_joint(rope: &Rope, spacing: f64, bodies: &Bodies) -> Option<Joint> {
-    let name = rope.body.as_ref().filter(|_| rope.held.first())?;
-    let body = bodies.views().iter().position(|body| body.name == *name)? as u32;
-    let pose = bodies.pose(body);
-    let (length, compliance) = (rope.full_length(), rope.compliance * rope.pieces(spacing));
-    Some(Joint {
-        body,
-        other: None,
-        anchor: Vector64::from_angle(-pose.angle).rotate(Vector64::from(rope.to) - pose.position),
-        other_anchor: rope.from.into(),
-        kind: JointKind::Distance { length, compliance, rule: DistanceRule::AtMost },
-    })
 }
 
 /// Walls in the order of the description: half-planes, closed sides of tanks, obstacles.
@@ -176,17 +90,23 @@ fn walls(scene: &Scene) -> Vec<Wall> {
         let (normal, velocity) = (Vector64::from(wall.normal), Vector64::from(wall.velocity));
         // A solid lies to the left of its outline.
         let speed = velocity.dot(normal.normalize().perp());
-        let surface = Surface { speed, ..Surface::with_friction(wall.friction) };
-        walls.push(Wall::half_plane(wall.point.into(), normal, surface));
+        let surface = Surface { speed, ..Surface::with_friction(body_friction(wall.friction)) };
+        walls.push(Wall::half_plane(wall.point.into(), normal, surface).named(wall.name.clone()));
     }
     for tank in &scene.tank {
         let sides = [Side::Left, Side::Right, Side::Bottom, Side::Top];
-        let all = Wall::tank(tank.min.into(), tank.max.into(), Surface::with_friction(tank.friction));
-        walls.extend(sides.into_iter().zip(all).filter(|(side, _)| !tank.open.contains(side)).map(|(_, wall)| wall));
+        let all = Wall::tank(tank.min.into(), tank.max.into(), Surface::with_friction(body_friction(tank.friction)));
+        let name = |side: Side| match tank.name.is_empty() {
+            true => String::new(),
+            false => format!("{} {}", tank.name, side.name()),
+        };
+        let closed = sides.into_iter().zip(all).filter(|(side, _)| !tank.open.contains(side));
+        walls.extend(closed.map(|(side, wall)| wall.named(name(side))));
     }
     for obstacle in &scene.obstacle {
-        let surface = Surface::with_friction(obstacle.friction);
-        walls.push(Wall::rectangle(obstacle.min.into(), obstacle.max.into(), surface));
+        let surface = Surface::with_friction(body_friction(obstacle.friction));
+        let wall = Wall::rectangle(obstacle.min.into(), obstacle.max.into(), surface);
+        walls.push(wall.named(obstacle.name.clone()));
     }
     walls
 }

@@ -19,6 +19,7 @@ use crate::parallel::Parallelism;
 use crate::particles::{NewParticle, OptionalColumns, Particles};
 use crate::periodic::{Periodic, PeriodicAxis};
 use crate::phase::{MaterialIndex, Phase};
+use crate::rigid::Bodies;
 use crate::pressure_grid::{Accuracy, Mixture, PressureGrid};
 use crate::rng::Rng;
 use crate::scene::{BodySolver, CheckedScene, GradientPoint, MaterialRef, Points, Problems, Scene, disc_points};
@@ -91,9 +92,11 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     let mut particles = particles(scene, seed, optional);
     let ropes = ropes::Ropes::lay(scene, &mut particles);
     let mut rigid = rigid_bodies(scene, &mut particles);
-    for (id, body, place) in &ropes.tied {
-        rigid.iter_mut().for_each(|rigid| rigid.tie(*id, body, *place));
+    if let Some(rigid) = &mut rigid {
+        ropes.tied.iter().for_each(|(id, body, place)| rigid.tie(*id, body, *place));
+        bodies::join_ropes(scene, &ropes.ends, rigid);
     }
+    let seen = rigid.as_ref().is_some_and(RigidBodies::is_seen);
     particles.fit();
     // Sums and corrections of each iteration, and about one pass for each effect.
     let passes = 2.0 * f64::from(scene.solver.iterations) + effects.len() as f64;
@@ -103,7 +106,6 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     let pressure_scale = density.pressure_scale;
     let groups = groups(scene, density, ropes, rigid.as_ref());
     Parts {
-        rigid,
         particles,
         materials: shown_materials(scene),
         forces: scene.materials().map(|material| body_force(material, scene)).collect(),
@@ -122,10 +124,16 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         tolerance: scene.solver.tolerance,
         pressure_scale,
         gravity: vector(scene.gravity.into()),
+        exact_gravity: scene.gravity.into(),
+        scene_bodies: rigid.as_ref().map_or(0, |rigid| rigid.views().len()),
+        scene_mark: rigid.as_ref().map_or(0, RigidBodies::mark),
+        no_bodies: RigidBodies::new(Bodies::new(scene.spacing), bodies::contacts(scene), None, scene.spacing),
+        sample_material: seen.then(|| scene.materials().count() as MaterialIndex - 1),
         spacing: scene.spacing,
         frame_time: 1.0 / scene.fps,
         seed,
         parallelism: Parallelism::Serial,
+        rigid,
     }
 }
 
@@ -152,7 +160,12 @@ fn groups(
         groups.push(density.group);
     }
     if let Some(rigid) = rigid.filter(|rigid| rigid.any_matched()) {
-        groups.push(Box::new(ShapeMatching::new(rigid.members(), scene.spacing)));
+        groups.push(Box::new(ShapeMatching::new(
+            rigid.members(),
+            scene.spacing,
+            scene.solver.iterations,
+            scene.contacts.friction_rule,
+        )));
     }
     groups.extend(ropes.groups());
     groups
@@ -186,17 +199,15 @@ fn periodic(scene: &Scene) -> Periodic {
 }
 
 fn body_force(material: MaterialRef<'_>, scene: &Scene) -> BodyForce {
-    let gravity = Vector64::from(scene.gravity);
-    match material {
-        MaterialRef::Liquid(liquid) => {
-            BodyForce { acceleration: vector(gravity * liquid.gravity_factor), thermal: false }
-        }
-        MaterialRef::Gas(gas) => BodyForce { acceleration: vector(gravity * gas.gravity_factor), thermal: true },
-        MaterialRef::Solid(solid) => BodyForce { acceleration: vector(gravity * solid.gravity_factor), thermal: false },
+    let (factor, thermal) = match material {
+        MaterialRef::Liquid(liquid) => (liquid.gravity_factor, false),
+        MaterialRef::Gas(gas) => (gas.gravity_factor, true),
+        MaterialRef::Solid(solid) => (solid.gravity_factor, false),
         // For bodies that are particles: all other samples have no inertia of their own.
-        MaterialRef::Rigid => BodyForce { acceleration: vector(gravity), thermal: false },
-        MaterialRef::Smoke(_) => BodyForce { acceleration: Vector::ZERO, thermal: false },
-    }
+        MaterialRef::Rigid => (1.0, false),
+        MaterialRef::Smoke(_) => return BodyForce { acceleration: Vector::ZERO, factor: 0.0, thermal: false },
+    };
+    BodyForce::new(scene.gravity.into(), factor, thermal)
 }
 
 /// The bodies of a scene; their samples are added to the particles where there is a fluid to see them.

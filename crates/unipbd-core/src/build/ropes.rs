@@ -13,6 +13,8 @@ pub(super) struct Ropes {
     distances: Vec<Distance>,
     /// Ends that are fixed to bodies: id, name of the body, place.
     pub tied: Vec<(u32, String, Vector64)>,
+    /// Ids of the first and last point of each rope.
+    pub ends: Vec<[u32; 2]>,
 }
 
 impl Ropes {
@@ -28,7 +30,7 @@ impl Ropes {
         let pieces = rope.pieces(scene.spacing) as usize;
         let inverse_mass = real(1.0 / material.particle_mass(scene.spacing));
         let [from, to] = [rope.from, rope.to].map(Vector64::from);
-        let held = [rope.held.first(), rope.held.last() || rope.body.is_some()];
+        let held = [rope.held.first() || rope.from_body.is_some(), rope.held.last() || rope.body.is_some()];
         let mut point = |number: usize| {
             let fixed = number == 0 && held[0] || number == pieces && held[1];
             particles.push(NewParticle {
@@ -42,6 +44,8 @@ impl Ropes {
         };
         let ids: Vec<u32> = (0..=pieces).map(&mut point).collect();
         self.tied.extend(rope.body.iter().map(|body| (ids[pieces], body.clone(), to)));
+        self.tied.extend(rope.from_body.iter().map(|body| (ids[0], body.clone(), from)));
+        self.ends.push([ids[0], ids[pieces]]);
         let piece = rope.full_length() / pieces as f64;
         let (length, compliance) = (real(piece), real(rope.compliance));
         for pair in ids.windows(2) {

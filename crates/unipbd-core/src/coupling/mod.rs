@@ -2,7 +2,9 @@
 //! fluid that stays outside.
 
 mod demand;
+mod edit;
 mod push_out;
+mod saved;
 mod soft_bodies;
 
 use crate::math::{Real, Vector, Vector64, vector, wide};
@@ -20,8 +22,10 @@ const LEAST_NEAR: f64 = 0.75;
 pub struct RigidBodies {
     pub(crate) bodies: Bodies,
     pub(crate) contacts: Contacts,
-    /// Id of the first sample of each body, and one past the last of all.
-    first_sample: Vec<u32>,
+    /// Ids of the samples of each body, from the first to one past the last.
+    sample_ids: Vec<(u32, u32)>,
+    /// Whether a fluid, or particles, meet bodies through their samples.
+    seen: bool,
     /// Distance from a sample within which a particle may be inside the body, by body [m].
     near: Vec<Real>,
     /// Path in a substep, of a particle or a body, from which on the way counts and not the place alone [m].
@@ -29,6 +33,8 @@ pub struct RigidBodies {
     penetrations: Vec<Penetration>,
     /// Ends of ropes that move with bodies.
     tied: Vec<Tied>,
+    /// Joints whose anchor in the world is a particle.
+    carried: Vec<Carried>,
     /// Bodies that are particles, drawn back to their shapes.
     matched: Vec<soft_bodies::Matched>,
 }
@@ -42,28 +48,41 @@ struct Tied {
     place: Vector64,
 }
 
+/// Distance from a sample within which a particle may be inside the body [m].
+fn near(body: &Body, seen: bool, spacing: f64) -> Real {
+    let gap = if seen { push_out::widest_gap(body, spacing) } else { 0.0 };
+    gap.max(LEAST_NEAR * spacing) as Real
+}
+
+/// A joint whose anchor in the world is a particle while that is held: the free end of a rope.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+struct Carried {
+    joint: u32,
+    id: u32,
+}
+
 impl RigidBodies {
     /// Bodies whose samples have consecutive ids from `first_sample`, body by body.
     /// Without a fluid the samples have no use: then there are none.
     pub(crate) fn new(bodies: Bodies, contacts: Contacts, first_sample: Option<u32>, spacing: f64) -> Self {
-        let mut next = first_sample.unwrap_or(0);
-        let mut first = vec![next];
-        let mut near = Vec::new();
+        let (mut next, seen) = (first_sample.unwrap_or(0), first_sample.is_some());
+        let mut sample_ids = Vec::new();
         for body in bodies.views() {
-            let seen = first_sample.is_some();
+            let first = next;
             next += if seen { body.samples.len() as u32 } else { 0 };
-            first.push(next);
-            let gap = if seen { push_out::widest_gap(body, spacing) } else { 0.0 };
-            near.push(gap.max(LEAST_NEAR * spacing) as Real);
+            sample_ids.push((first, next));
         }
+        let near = bodies.views().iter().map(|body| near(body, seen, spacing)).collect();
         let mut rigid = RigidBodies {
             bodies,
             contacts,
-            first_sample: first,
+            sample_ids,
+            seen,
             near,
             far: (0.5 * spacing) as Real,
             penetrations: Vec::new(),
             tied: Vec::new(),
+            carried: Vec::new(),
             matched: Vec::new(),
         };
         rigid.list_matched(spacing);
@@ -78,24 +97,36 @@ impl RigidBodies {
         self.tied.push(Tied { id, body: number as u32, place });
     }
 
+    /// From now on the anchor of a joint in the world is a particle, and the joint acts while that is held.
+    pub(crate) fn carry(&mut self, joint: usize, id: u32) {
+        self.carried.push(Carried { joint: joint as u32, id });
+    }
+
+    /// Takes the anchors of joints to the particles that carry them, which are predicted for the substep.
+    pub(crate) fn carry_anchors(&mut self, particles: &Particles, rows: &RowIndex) {
+        for carried in &self.carried {
+            let held = rows.row(carried.id).map(|row| row as usize).filter(|&row| particles.inverse_mass[row] == 0.0);
+            let way = held.map(|row| {
+                let start = wide(particles.start[row]);
+                (start, wide(particles.position[row]) - start)
+            });
+            self.contacts.carry(carried.joint as usize, way, &mut self.bodies);
+        }
+    }
+
     /// The bodies as they are read from outside.
     pub fn views(&self) -> &[Body] {
         self.bodies.views()
     }
 
-    /// Whether particles move with the bodies: samples that a fluid meets, or ends of ropes.
-    pub(crate) fn has_followers(&self) -> bool {
-        self.first_sample.first() != self.first_sample.last() || !self.tied.is_empty()
+    /// Whether bodies have samples that particles meet.
+    pub(crate) fn is_seen(&self) -> bool {
+        self.seen
     }
 
-    /// These bodies at the moment of a saved state; `None` if the state is of other bodies or makes no sense.
-    pub(crate) fn at_saved(&self, saved: RigidBodies) -> Option<RigidBodies> {
-        if self.first_sample != saved.first_sample {
-            return None;
-        }
-        let bodies = self.bodies.at_saved(saved.bodies)?;
-        let contacts = self.contacts.at_saved(saved.contacts, &bodies)?;
-        Some(RigidBodies { bodies, contacts, ..self.clone() })
+    /// Whether particles move with the bodies: samples that a fluid meets, or ends of ropes.
+    pub(crate) fn has_followers(&self) -> bool {
+        self.sample_ids.iter().any(|(first, end)| first < end) || !self.tied.is_empty()
     }
 
     /// Finds contacts, predicts the bodies and applies the impulses kept from the last substep.
@@ -128,8 +159,8 @@ impl RigidBodies {
 
     /// The bodies to be pushed by a fluid, and whether a body has samples that the fluid meets.
     pub(crate) fn immersed(&mut self) -> (&mut Bodies, impl Fn(u32) -> bool) {
-        let first = &self.first_sample;
-        (&mut self.bodies, move |body: u32| first[body as usize] < first[body as usize + 1])
+        let ids = &self.sample_ids;
+        (&mut self.bodies, move |body: u32| ids[body as usize].0 < ids[body as usize].1)
     }
 
     /// Puts the samples where the bodies are predicted to be.
@@ -168,7 +199,7 @@ impl RigidBodies {
             }
             let center = self.bodies.predicted_pose(body).position;
             let (mut force, mut torque) = (Vector64::ZERO, 0.0);
-            for id in self.first_sample[body as usize]..self.first_sample[body as usize + 1] {
+            for id in self.samples_of(body) {
                 let Some(row) = rows.row(id) else { continue };
                 let load = wide(loads[row as usize]);
                 force += load;
@@ -180,11 +211,16 @@ impl RigidBodies {
         }
     }
 
+    /// Ids of the samples of a body.
+    pub(crate) fn samples_of(&self, body: u32) -> std::ops::Range<u32> {
+        let (first, end) = self.sample_ids[body as usize];
+        first..end
+    }
+
     /// Visits the samples whose rows are known: body, place in the body, row.
     fn each_sample(&self, rows: &RowIndex, mut visit: impl FnMut(u32, Vector64, usize)) {
         for (body, view) in self.bodies.views().iter().enumerate() {
-            let ids = self.first_sample[body]..self.first_sample[body + 1];
-            for (id, &sample) in ids.zip(&view.samples) {
+            for (id, &sample) in self.samples_of(body as u32).zip(&view.samples) {
                 if let Some(row) = rows.row(id) {
                     visit(body as u32, sample, row as usize);
                 }
@@ -207,7 +243,7 @@ impl RigidBodies {
     }
 
     fn first_row(&self, body: u32, rows: &RowIndex) -> Option<usize> {
-        let ids = self.first_sample[body as usize]..self.first_sample[body as usize + 1];
+        let ids = self.samples_of(body);
         if ids.is_empty() { None } else { rows.row(ids.start).map(|row| row as usize) }
     }
 
@@ -218,7 +254,7 @@ impl RigidBodies {
 
     /// Whether the sample of this id may sleep: its body is not kinematic.
     pub(crate) fn may_rest(&self, id: u32) -> bool {
-        let body = self.first_sample.partition_point(|&first| first <= id) - 1;
+        let body = self.sample_ids.partition_point(|&(first, _)| first <= id) - 1;
         let matched = self.bodies.elasticity(body).is_some();
         !matched && (self.bodies.is_dynamic(body) || !self.bodies.is_active(body))
     }
@@ -229,7 +265,7 @@ impl RigidBodies {
             // A body that becomes kinematic was not woken by another body.
             let awake = !self.bodies.is_asleep(body) || self.bodies.is_active(body as usize);
             if awake && self.sleeps_with_samples(body, particles, rows) {
-                let ids = self.first_sample[body as usize]..self.first_sample[body as usize + 1];
+                let ids = self.samples_of(body);
                 ids.filter_map(|id| rows.row(id)).for_each(|row| visit(row as usize));
             }
         }
@@ -240,7 +276,7 @@ impl RigidBodies {
     pub(crate) fn wake_bodies(&mut self, rows: &RowIndex, wakes: impl Fn(usize) -> bool) -> bool {
         let mut any = false;
         for body in 0..self.bodies.len() as u32 {
-            let mut ids = self.first_sample[body as usize]..self.first_sample[body as usize + 1];
+            let mut ids = self.samples_of(body);
             let wakes = |id: u32| rows.row(id).is_some_and(|row| wakes(row as usize));
             if self.bodies.is_asleep(body) && ids.any(wakes) {
                 self.contacts.wake(&mut self.bodies, body);

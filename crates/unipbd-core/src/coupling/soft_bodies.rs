@@ -45,7 +45,7 @@ impl RigidBodies {
                 Shape::Polygon(view.outline.clone())
             };
             let mass = if view.kind == BodyKind::Dynamic { view.mass } else { f64::INFINITY };
-            let (first, elasticity) = (self.first_sample[id], self.bodies.elasticity(id));
+            let (first, elasticity) = (self.sample_ids[id].0, self.bodies.elasticity(id));
             Member::new(first, view.samples.clone(), &shape, mass, elasticity, view.surface, view.filter)
         };
         self.bodies.views().iter().enumerate().map(member).collect()
@@ -56,7 +56,7 @@ impl RigidBodies {
         for matched in &self.matched {
             let id = matched.body as usize;
             let rest = &self.bodies.views()[id].samples;
-            let found = (self.first_sample[id]..self.first_sample[id + 1]).filter_map(|id| rows.row(id));
+            let found = self.samples_of(matched.body).filter_map(|id| rows.row(id));
             let found: Vec<usize> = found.map(|row| row as usize).collect();
             let places: Vec<Vector64> = found.iter().map(|&row| wide(particles.position[row])).collect();
             let count = places.len().max(1) as f64;
@@ -71,7 +71,7 @@ impl RigidBodies {
             }
             let pose = Pose { position: center, angle: turned.to_angle() };
             let angular = if inertia > 0.0 { spin / inertia } else { 0.0 };
-            let soft = self.bodies.elasticity(id).is_some_and(|how| how.stiffness < 1.0);
+            let soft = self.bodies.elasticity(id).is_some_and(|how| how.compliance > 0.0);
             let outline = soft.then(|| matched.deformed(&places, rest, pose));
             self.bodies.follow(id, pose, Twist { linear, angular }, outline);
         }
@@ -81,8 +81,7 @@ impl RigidBodies {
     pub(crate) fn set_sample_velocities(&self, bodies: &[(u32, Twist)], particles: &mut Particles, rows: &RowIndex) {
         for &(body, velocity) in bodies.iter().filter(|(body, _)| self.bodies.elasticity(*body as usize).is_some()) {
             let center = self.bodies.pose(body).position;
-            let ids = self.first_sample[body as usize]..self.first_sample[body as usize + 1];
-            for row in ids.filter_map(|id| rows.row(id)).map(|row| row as usize) {
+            for row in self.samples_of(body).filter_map(|id| rows.row(id)).map(|row| row as usize) {
                 particles.velocity[row] = vector(velocity.at(wide(particles.position[row]) - center));
             }
         }

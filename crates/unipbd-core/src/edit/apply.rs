@@ -3,6 +3,7 @@
 use std::ops::Range;
 
 use super::check::Checker;
+use super::world::WorldChange;
 use super::{Change, Edit, EditError, Points, Values};
 use crate::math::{Vector, real, vector, wide};
 use crate::particles::NewParticle;
@@ -36,10 +37,17 @@ impl Solver {
         edit.additions.iter().for_each(|points| self.pour(points));
         felt.extend(edit.additions.iter().flat_map(|points| &points.positions).map(|&point| vector(point)));
         let last = self.particles().ids_given();
-        let same = removed.is_empty() && first == last;
+        let rows_before = self.particles().len();
+        let done = self.change_world(&edit.world);
+        felt.extend(done.places);
+        let same = removed.is_empty() && first == self.particles().ids_given() && rows_before == self.particles().len();
+        let gravity = edit.world.iter().any(|change| matches!(change, WorldChange::Gravity(_)));
         let population = if same { Population::Same } else { Population::Changed };
         self.on_threads(|world| {
             world.edited(population);
+            if gravity {
+                world.wake_all();
+            }
             world.wake_near(&felt);
         });
         Ok(first..last)

@@ -10,7 +10,7 @@ use crate::step::{ABSURD_SPEED, Solver};
 
 /// The state that an edit is checked against.
 pub(super) struct Checker<'a> {
-    solver: &'a Solver,
+    pub(super) solver: &'a Solver,
     /// All ids in ascending order.
     ids: Vec<u32>,
 }
@@ -33,6 +33,7 @@ impl<'a> Checker<'a> {
         edit.bodies.iter().try_for_each(|(body, velocity)| self.body(*body, velocity))?;
         edit.additions.iter().try_for_each(|points| self.points(points))?;
         self.crowding(edit)?;
+        self.world(edit)?;
         let added: usize = edit.additions.iter().map(|points| points.positions.len()).sum();
         let left = (u32::MAX - self.solver.particles().ids_given()) as usize;
         if added >= left { Err(EditError::Unfit(format!("no more than {left} ids are left"))) } else { Ok(()) }
@@ -119,6 +120,9 @@ impl<'a> Checker<'a> {
     fn body(&self, id: u32, velocity: &Twist) -> Result<(), EditError> {
         let bodies = self.solver.bodies();
         let body = bodies.get(id as usize).ok_or_else(|| EditError::Unfit(format!("there is no body {id}")))?;
+        if body.removed {
+            return Err(EditError::Unfit(format!("the body \"{}\" was taken away", body.name)));
+        }
         if body.kind == BodyKind::Static {
             return Err(EditError::Unfit(format!("the body \"{}\" is static: it never moves", body.name)));
         }
@@ -168,7 +172,7 @@ impl<'a> Checker<'a> {
         })
     }
 
-    fn positions(&self, positions: &[Vector64]) -> Result<(), EditError> {
+    pub(super) fn positions(&self, positions: &[Vector64]) -> Result<(), EditError> {
         let limit = FARTHEST * self.solver.spacing();
         for (index, position) in positions.iter().enumerate() {
             both_finite("position", index, *position)?;
@@ -197,12 +201,12 @@ fn lengths(what: &'static str, particles: usize, values: usize) -> Result<(), Ed
     if particles == values { Ok(()) } else { Err(EditError::Lengths { what, particles, values }) }
 }
 
-fn both_finite(what: &'static str, index: usize, value: Vector64) -> Result<(), EditError> {
+pub(super) fn both_finite(what: &'static str, index: usize, value: Vector64) -> Result<(), EditError> {
     finite(what, index, value.x)?;
     finite(what, index, value.y)
 }
 
-fn finite(what: &'static str, index: usize, value: f64) -> Result<(), EditError> {
+pub(super) fn finite(what: &'static str, index: usize, value: f64) -> Result<(), EditError> {
     // A value that overflows the particles' precision is as bad as an infinite one.
     if crate::math::real(value).is_finite() {
         return Ok(());

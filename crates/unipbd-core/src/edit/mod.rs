@@ -11,23 +11,31 @@
 //! ```
 
 mod apply;
+mod bodies;
 mod check;
+mod check_bodies;
+mod world;
 mod error;
 
+pub use crate::rigid::BodyChange;
 pub use error::EditError;
+
+use world::WorldChange;
 
 use crate::math::Vector64;
 use crate::rigid::Twist;
 use crate::scene::PointMotion;
 
 /// Changes to make at once with [`Solver::apply`](crate::Solver::apply). Values are set first, then
-/// particles are removed, then new ones are added; ids are those before the edit.
+/// particles are removed, then new ones are added, then bodies, joints and gravity change in the order given; ids of
+/// particles are those before the edit.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Edit {
     changes: Vec<Change>,
     bodies: Vec<(u32, Twist)>,
     removals: Vec<u32>,
     additions: Vec<Points>,
+    world: Vec<WorldChange>,
 }
 
 /// Values for some particles: one for each id.
@@ -131,7 +139,8 @@ impl Edit {
 
     /// Whether the edit is empty.
     pub fn is_empty(&self) -> bool {
-        self.changes.is_empty() && self.bodies.is_empty() && self.removals.is_empty() && self.additions.is_empty()
+        let particles = self.changes.is_empty() && self.removals.is_empty() && self.additions.is_empty();
+        particles && self.bodies.is_empty() && self.world.is_empty()
     }
 
     /// The particles that it changes or removes.

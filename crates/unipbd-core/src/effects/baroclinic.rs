@@ -32,6 +32,10 @@ impl Baroclinic {
 }
 
 impl Effect for Baroclinic {
+    fn set_gravity(&mut self, gravity: Vector) {
+        self.gravity = gravity;
+    }
+
     fn name(&self) -> &'static str {
         "baroclinic"
     }

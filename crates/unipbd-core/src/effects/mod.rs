@@ -41,6 +41,11 @@ pub trait Effect: Send + Sync {
     /// Adds the changes to `out`; the loop applies them to all rows but those of kinematic particles.
     fn apply(&mut self, now: Substep<'_>, out: &mut Changes);
 
+    /// Gravity was changed [m/s^2].
+    fn set_gravity(&mut self, gravity: Vector) {
+        let _ = gravity;
+    }
+
     /// Memory held by columns of its own [bytes].
     fn memory_bytes(&self) -> usize {
         0

@@ -123,11 +123,17 @@ entries! {
 
 entries! {
     walls = 28;
-    /// The force of the fluids on a wall that has a name; the sides of a tank are `NAME left` and so on.
+    /// The force on a wall that has a name; the sides of a tank are `NAME left` and so on.
     pub struct WallForce {
-        /// Mean force of the fluids over the last frame.
+        /// Mean force of fluids and bodies over the last frame.
         #[quantity(2, "N")]
         pub force: Vector64,
+        /// Mean force of the fluids, and of bodies made of particles, over the last frame.
+        #[quantity(4, "N")]
+        pub fluid_force: Vector64,
+        /// Mean force of the contacts of rigid bodies over the last frame.
+        #[quantity(6, "N")]
+        pub contact_force: Vector64,
     }
 }
 

@@ -1,8 +1,8 @@
 //! All bodies of a run: state as columns, and the specification of each body.
 
-use super::{Body, BodyKind, BodySpec, Elasticity, MassSpec, Motion, Pose, Rotation, Twist};
+use super::{Body, BodyKind, BodySpec, Damping, Elasticity, MassSpec, Motion, Pose, Rotation, Twist};
 use crate::math::Vector64;
-use crate::shapes::{Core, Shape, ShapeError};
+use crate::shapes::{Core, Samples, Shape, ShapeError};
 use std::f64::consts::{PI, TAU};
 
 /// Response of a body to a push: its inverse mass and inertia, both 0 for an immovable body.
@@ -18,20 +18,21 @@ pub struct InverseMass {
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Script {
     /// Pose of the outline's origin at time zero.
-    start: Pose,
+    pub(super) start: Pose,
     /// Origin of the outline relative to the centre of mass, in body coordinates.
-    origin: Vector64,
-    motion: Motion,
+    pub(super) origin: Vector64,
+    pub(super) motion: Motion,
     /// Velocity of a kinematic body set by a caller: it replaces the prescribed motion from then on.
     pub(super) driven: Option<Twist>,
     gravity_factor: f64,
+    damping: Damping,
 }
 
-/// All bodies of a run. A body's index is its id: bodies are never removed or renumbered.
+/// All bodies of a run. A body's index is its id: it stays when others are taken away.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Bodies {
     /// Distance of lattice samples [m].
-    spacing: f64,
+    pub(super) spacing: f64,
     pub(crate) poses: Vec<Pose>,
     pub(crate) velocities: Vec<Twist>,
     /// Displacement u over the running substep.
@@ -55,26 +56,25 @@ pub struct Bodies {
     pub(crate) sizes: Vec<f64>,
     pub(super) scripts: Vec<Script>,
     pub(super) views: Vec<Body>,
+    /// What each body was made from, with all changes since.
+    pub(super) specs: Vec<BodySpec>,
 }
 
-impl Bodies {
-    /// An empty set; `spacing` is the rest distance of particles [m].
-    pub fn new(spacing: f64) -> Bodies {
-        Bodies { spacing, ..Bodies::default() }
-    }
+/// What follows from the specification of a body.
+pub(super) struct Derived {
+    pub pose: Pose,
+    pub velocity: Twist,
+    pub response: InverseMass,
+    pub matched: Option<Elasticity>,
+    pub core: Core,
+    pub reach: f64,
+    pub size: f64,
+    pub script: Script,
+    pub view: Body,
+}
 
-    /// Number of bodies.
-    pub fn len(&self) -> usize {
-        self.poses.len()
-    }
-
-    /// Whether the set is empty.
-    pub fn is_empty(&self) -> bool {
-        self.poses.is_empty()
-    }
-
-    /// Adds a body and returns its id.
-    pub fn add(&mut self, spec: BodySpec) -> Result<u32, ShapeError> {
+impl Derived {
+    pub fn of(spec: &BodySpec, spacing: f64) -> Result<Derived, ShapeError> {
         spec.shape.check()?;
         let outline = spec.shape.tidied();
         let moments = outline.moments();
@@ -99,25 +99,71 @@ impl Bodies {
         };
         let origin = motion.pose(spec.pose, 0.0);
         let pose = Pose { position: origin.apply(moments.centroid), angle: origin.angle };
-        self.poses.push(pose);
-        self.velocities.push(velocity);
+        let (gravity_factor, damping) = (spec.gravity_factor, spec.damping);
+        Ok(Derived {
+            pose,
+            velocity,
+            response,
+            matched,
+            core: shape.core(),
+            reach: shape.bounding_radius(),
+            size: moments.area.sqrt(),
+            script: Script {
+                start: spec.pose,
+                origin: -moments.centroid,
+                motion,
+                driven: None,
+                gravity_factor,
+                damping,
+            },
+            view: view(spec, &shape, (mass, inertia), spacing),
+        })
+    }
+}
+
+impl Bodies {
+    /// An empty set; `spacing` is the rest distance of particles [m].
+    pub fn new(spacing: f64) -> Bodies {
+        Bodies { spacing, ..Bodies::default() }
+    }
+
+    /// Number of bodies.
+    pub fn len(&self) -> usize {
+        self.poses.len()
+    }
+
+    /// Whether the set is empty.
+    pub fn is_empty(&self) -> bool {
+        self.poses.is_empty()
+    }
+
+    /// Adds a body and returns its id.
+    pub fn add(&mut self, spec: BodySpec) -> Result<u32, ShapeError> {
+        let derived = Derived::of(&spec, self.spacing)?;
+        self.poses.push(derived.pose);
+        self.velocities.push(derived.velocity);
         self.displacements.push(Twist::ZERO);
-        self.awake_responses.push(response);
-        self.inverse_masses.push(response);
+        self.awake_responses.push(derived.response);
+        self.inverse_masses.push(derived.response);
         self.asleep.push(false);
-        self.matched.push(matched);
+        self.matched.push(derived.matched);
         self.contact_loads.push(Twist::ZERO);
         self.fluid_loads.push(Twist::ZERO);
         self.pushed.push(false);
-        self.cores.push(shape.core());
-        self.reaches.push(shape.bounding_radius());
-        self.sizes.push(moments.area.sqrt());
-        let gravity_factor = spec.gravity_factor;
-        self.scripts.push(Script { start: spec.pose, origin: -moments.centroid, motion, driven: None, gravity_factor });
-        self.views.push(view(spec, &shape, (mass, inertia), self.spacing));
+        self.cores.push(derived.core);
+        self.reaches.push(derived.reach);
+        self.sizes.push(derived.size);
+        self.scripts.push(derived.script);
+        self.views.push(derived.view);
+        self.specs.push(spec);
         let id = self.len() - 1;
         self.refresh_view(id);
         Ok(id as u32)
+    }
+
+    /// The body of this name, unless it was taken away.
+    pub fn find(&self, name: &str) -> Option<u32> {
+        self.views.iter().position(|body| body.name == name && !body.removed).map(|id| id as u32)
     }
 
     /// Whether both sets hold bodies of the same shapes and names, possibly at different times.
@@ -131,8 +177,9 @@ impl Bodies {
             && [&self.reaches, &self.sizes].iter().all(|column| column.len() == bodies)
             && [&self.asleep, &self.pushed].iter().all(|column| column.len() == bodies)
             && self.cores == other.cores
-            && self.scripts.len() == bodies;
-        let same = |(a, b): (&Body, &Body)| a.name == b.name && a.kind == b.kind && a.samples.len() == b.samples.len();
+            && self.scripts.len() == bodies
+            && self.specs.len() == bodies;
+        let same = |(a, b): (&Body, &Body)| a.name == b.name && a.removed == b.removed && a.kind == b.kind && a.samples.len() == b.samples.len();
         whole
             && same_kind
             && self.views.len() == bodies
@@ -225,9 +272,8 @@ impl Bodies {
         for id in 0..self.len() {
             self.displacements[id] = match self.views[id].kind {
                 BodyKind::Dynamic if !self.asleep[id] && self.matched[id].is_none() => {
-                    let mut moved = self.velocities[id].scaled(dt);
-                    moved.linear += gravity * (self.scripts[id].gravity_factor * dt * dt);
-                    moved
+                    let pull = gravity * self.scripts[id].gravity_factor;
+                    self.scripts[id].damping.moved(&self.velocities[id], pull, dt)
                 }
                 BodyKind::Kinematic => match self.scripts[id].driven {
                     Some(velocity) => velocity.scaled(dt),
@@ -334,7 +380,12 @@ impl Bodies {
         }
     }
 
-    fn refresh_view(&mut self, id: usize) {
+    /// Brings the readable state of all bodies up to date.
+    pub(crate) fn refresh_views(&mut self) {
+        (0..self.len()).for_each(|id| self.refresh_view(id));
+    }
+
+    pub(super) fn refresh_view(&mut self, id: usize) {
         let view = &mut self.views[id];
         (view.position, view.angle) = (self.poses[id].position, self.poses[id].angle);
         (view.velocity, view.angular_velocity) = (self.velocities[id].linear, self.velocities[id].angular);
@@ -349,14 +400,15 @@ fn script_velocity(motion: &Motion, angle: f64, centroid: Vector64) -> Twist {
     Twist { linear: origin.at(arm), angular: origin.angular }
 }
 
-fn view(spec: BodySpec, shape: &Shape, (mass, inertia): (f64, f64), spacing: f64) -> Body {
-    let samples = shape.samples(spacing);
+fn view(spec: &BodySpec, shape: &Shape, (mass, inertia): (f64, f64), spacing: f64) -> Body {
+    // No fluid feels a sensor.
+    let samples = if spec.sensor { Samples::default() } else { shape.samples(spacing) };
     let (outline, radius) = match shape {
         Shape::Disc { radius } => (Vec::new(), *radius),
         Shape::Polygon(corners) => (corners.clone(), 0.0),
     };
     Body {
-        name: spec.name,
+        name: spec.name.clone(),
         kind: spec.kind,
         position: Vector64::ZERO,
         angle: 0.0,
@@ -370,6 +422,10 @@ fn view(spec: BodySpec, shape: &Shape, (mass, inertia): (f64, f64), spacing: f64
         sample_area: samples.area,
         surface: spec.surface,
         filter: spec.filter,
+        sensor: spec.sensor,
+        user_data: spec.user_data,
+        gravity_factor: spec.gravity_factor,
+        removed: false,
         asleep: false,
         fluid_force: Vector64::ZERO,
         fluid_torque: 0.0,

@@ -1,7 +1,9 @@
 //! Rigid bodies: poses, masses, prescribed motions, static walls, and the solver of their contacts and joints.
 
 mod body_set;
+mod change;
 pub mod contact;
+mod describe;
 mod motion;
 mod saved;
 mod specification;
@@ -9,8 +11,10 @@ mod wall;
 
 pub use crate::scene::BodyKind;
 pub use body_set::{Bodies, InverseMass};
+pub use change::BodyChange;
 pub use motion::{Motion, Repeat, Waypoint};
-pub use specification::{BodySpec, CollisionFilter, Elasticity, MassSpec, Rotation, Surface};
+pub(crate) use describe::{joint, specification, strength};
+pub use specification::{BodySpec, CollisionFilter, Damping, Elasticity, MassSpec, Rotation, Surface};
 pub use wall::{Boundary, Wall};
 
 use crate::math::Vector64;
@@ -28,6 +32,11 @@ impl Pose {
     /// Body coordinates to world coordinates.
     pub fn apply(&self, point: Vector64) -> Vector64 {
         self.position + Vector64::from_angle(self.angle).rotate(point)
+    }
+
+    /// World coordinates to body coordinates.
+    pub fn apply_inverse(&self, point: Vector64) -> Vector64 {
+        Vector64::from_angle(-self.angle).rotate(point - self.position)
     }
 }
 
@@ -47,6 +56,11 @@ impl Twist {
     /// The linear part at a point with this arm from the centre of mass.
     pub fn at(&self, arm: Vector64) -> Vector64 {
         self.linear + arm.perp() * self.angular
+    }
+
+    /// The same motion, referred to the point at this arm.
+    pub(crate) fn moved_to(&self, arm: Vector64) -> Twist {
+        Twist { linear: self.at(arm), angular: self.angular }
     }
 
     /// All parts times a factor.
@@ -100,6 +114,14 @@ pub struct Body {
     pub surface: Surface,
     /// Collision filter.
     pub filter: CollisionFilter,
+    /// Whether it reports what it touches and pushes nothing.
+    pub sensor: bool,
+    /// A number of the caller's own.
+    pub user_data: u64,
+    /// Factor on gravity.
+    pub gravity_factor: f64,
+    /// Whether it was taken away: its number is not given to another.
+    pub removed: bool,
     /// Whether it is asleep: held still until it is woken.
     pub asleep: bool,
     /// Force of the fluid over the last frame, mean [N].
@@ -110,4 +132,34 @@ pub struct Body {
     pub contact_force: Vector64,
     /// Torque of contacts and joints about the centre of mass over the last frame, mean [N m].
     pub contact_torque: f64,
+}
+
+impl Default for Body {
+    fn default() -> Self {
+        Body {
+            name: String::new(),
+            kind: BodyKind::Static,
+            position: Vector64::ZERO,
+            angle: 0.0,
+            velocity: Vector64::ZERO,
+            angular_velocity: 0.0,
+            mass: 0.0,
+            inertia: 0.0,
+            outline: Vec::new(),
+            radius: 0.0,
+            samples: Vec::new(),
+            sample_area: 0.0,
+            surface: Surface::default(),
+            filter: CollisionFilter::default(),
+            sensor: false,
+            user_data: 0,
+            gravity_factor: 1.0,
+            removed: false,
+            asleep: false,
+            fluid_force: Vector64::ZERO,
+            fluid_torque: 0.0,
+            contact_force: Vector64::ZERO,
+            contact_torque: 0.0,
+        }
+    }
 }

@@ -59,6 +59,21 @@ pub enum Repeat {
 }
 
 impl Motion {
+    /// Whether all its numbers are finite, and its times in order.
+    pub(super) fn is_finite(&self) -> bool {
+        match self {
+            Motion::Still => true,
+            Motion::Steady { velocity, spin } => velocity.is_finite() && spin.is_finite(),
+            Motion::Oscillate { amplitude, swing, frequency, phase } => {
+                amplitude.is_finite() && [swing, frequency, phase].into_iter().all(|value| value.is_finite())
+            }
+            Motion::Path { waypoints, .. } => {
+                let sound = |at: &Waypoint| at.offset.is_finite() && at.turn.is_finite() && at.time.is_finite();
+                waypoints.iter().all(sound) && waypoints.windows(2).all(|two| two[0].time < two[1].time)
+            }
+        }
+    }
+
     /// Whether the body never moves.
     pub fn is_still(&self) -> bool {
         *self == Motion::Still

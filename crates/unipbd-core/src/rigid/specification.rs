@@ -1,6 +1,8 @@
 //! The specification of a body.
 
 use super::{BodyKind, Motion, Pose, Twist};
+use crate::math::Vector64;
+use crate::scene::FrictionRule;
 use crate::shapes::Shape;
 
 /// Friction and restitution of a surface.
@@ -48,12 +50,12 @@ impl Surface {
         if stop.abs() < sticks { stop } else { stop.clamp(-drag, drag) }
     }
 
-    /// The combined coefficients of two surfaces: the geometric mean of the friction coefficients (one smooth
-    /// side makes a smooth contact), the larger restitution, the larger rolling friction, the sum of the surface speeds.
-    pub fn combined(&self, other: &Surface) -> Surface {
-        let kinetic = (self.kinetic_friction * other.kinetic_friction).sqrt();
+    /// The combined coefficients of two surfaces: friction by the rule, the larger restitution, the larger rolling
+    /// friction, the sum of the surface speeds.
+    pub fn combined(&self, other: &Surface, rule: FrictionRule) -> Surface {
+        let kinetic = rule.combine(self.kinetic_friction, other.kinetic_friction);
         Surface {
-            static_friction: (self.static_friction * other.static_friction).sqrt().max(kinetic),
+            static_friction: rule.combine(self.static_friction, other.static_friction).max(kinetic),
             kinetic_friction: kinetic,
             rolling_friction: self.rolling_friction.max(other.rolling_friction),
             restitution: self.restitution.max(other.restitution),
@@ -62,30 +64,35 @@ impl Surface {
     }
 }
 
-/// Collision filter: two bodies collide if each of them lists a layer of the other.
+/// Collision filter: two bodies collide if each of them lists a layer of the other; a common group overrides that.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub struct CollisionFilter {
     /// Layers the body is in, one bit each.
     pub layers: u32,
     /// Layers it collides with.
     pub collides_with: u32,
+    /// Bodies of the same group above 0 always collide, below 0 never.
+    pub group: i32,
 }
 
 impl Default for CollisionFilter {
     fn default() -> Self {
-        CollisionFilter { layers: 1, collides_with: u32::MAX }
+        CollisionFilter { layers: 1, collides_with: u32::MAX, group: 0 }
     }
 }
 
 impl CollisionFilter {
     /// Whether two bodies collide.
     pub const fn allows(&self, other: &CollisionFilter) -> bool {
+        if self.group != 0 && self.group == other.group {
+            return self.group > 0;
+        }
         self.layers & other.collides_with != 0 && other.layers & self.collides_with != 0
     }
 }
 
 /// Mass of a body, direct or by density.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum MassSpec {
     /// Mass per area [kg/m^2].
     Density(f64),
@@ -96,14 +103,42 @@ pub enum MassSpec {
 /// Elasticity of a body with shape matching.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Elasticity {
-    /// Fraction of its deformation that is recovered in 1/60 s, 0 to 1.
-    pub stiffness: f64,
+    /// Displacement of the samples from the shape per force spread over all of them; 0 is rigid [m/N].
+    pub compliance: f64,
     /// Fraction of its oscillation that is damped in 1/60 s, 0 to 1.
     pub damping: f64,
 }
 
+/// Rates at which the velocity of a body decays.
+#[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Damping {
+    /// Of the velocity of the centre of mass [1/s].
+    pub linear: f64,
+    /// Of the angular velocity [1/s].
+    pub angular: f64,
+}
+
+impl Damping {
+    /// The displacement of a substep of length `dt` [s] from a velocity and an acceleration by gravity: the exact decay
+    /// of v' = g - c v, so that the terminal speed is g/c at every number of substeps.
+    pub(crate) fn moved(&self, velocity: &Twist, pull: Vector64, dt: f64) -> Twist {
+        let mut moved = velocity.scaled(dt);
+        let mut push = dt * dt;
+        if self.linear > 0.0 {
+            let kept = (-self.linear * dt).exp();
+            moved.linear *= kept;
+            push = dt * -(-self.linear * dt).exp_m1() / self.linear;
+        }
+        if self.angular > 0.0 {
+            moved.angular *= (-self.angular * dt).exp();
+        }
+        moved.linear += pull * push;
+        moved
+    }
+}
+
 /// Whether a dynamic body may turn.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 pub enum Rotation {
     /// It turns freely.
     #[default]
@@ -113,7 +148,7 @@ pub enum Rotation {
 }
 
 /// The specification of a body.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct BodySpec {
     /// Name.
     pub name: String,
@@ -137,6 +172,12 @@ pub struct BodySpec {
     pub matched: Option<Elasticity>,
     /// Factor on gravity.
     pub gravity_factor: f64,
+    /// Rates at which its velocity decays.
+    pub damping: Damping,
+    /// Whether it reports what it touches and pushes nothing.
+    pub sensor: bool,
+    /// A number of the caller's own.
+    pub user_data: u64,
     /// Prescribed motion of a kinematic body, for the origin of its outline.
     pub motion: Motion,
 }
@@ -156,6 +197,9 @@ impl BodySpec {
             rotation: Rotation::Free,
             matched: None,
             gravity_factor: 1.0,
+            damping: Damping::default(),
+            sensor: false,
+            user_data: 0,
             motion: Motion::Still,
         }
     }

@@ -32,17 +32,25 @@ pub struct Wall {
     pub boundary: Boundary,
     /// Friction and restitution.
     pub surface: Surface,
+    /// Name under which its force is reported; empty without one.
+    pub name: String,
 }
 
 impl Wall {
     /// A half-plane; the normal need not have length 1.
     pub fn half_plane(point: Vector64, normal: Vector64, surface: Surface) -> Wall {
-        Wall { boundary: Boundary::HalfPlane { point, normal: normal.normalize() }, surface }
+        Wall { boundary: Boundary::HalfPlane { point, normal: normal.normalize() }, surface, name: String::new() }
     }
 
     /// A solid polygon in world coordinates.
     pub fn polygon(corners: Vec<Vector64>, surface: Surface) -> Wall {
-        Wall { boundary: Boundary::Polygon(corners), surface }
+        Wall { boundary: Boundary::Polygon(corners), surface, name: String::new() }
+    }
+
+    /// The same under a name.
+    #[must_use]
+    pub fn named(self, name: String) -> Wall {
+        Wall { name, ..self }
     }
 
     /// A solid axis-aligned box.

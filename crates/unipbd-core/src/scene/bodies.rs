@@ -1,5 +1,8 @@
 use serde::{Deserialize, Serialize};
 
+/// Coulomb friction coefficient of bodies and walls by default.
+pub(crate) const FRICTION: f64 = 0.5;
+
 /// How a body moves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -27,10 +30,10 @@ pub struct BodyDescription {
     /// How a dynamic body moves: as a rigid pose, or as particles drawn back to its shape.
     #[serde(default)]
     pub solver: BodySolver,
-    /// Part of its deformation that a body with `solver = "shape_matching"` takes back in a 60th of a second, 0 to 1:
-    /// 1 is rigid.
-    #[serde(default = "one")]
-    pub stiffness: f64,
+    /// Compliance of a body with `solver = "shape_matching"`: displacement of its samples from its shape per force, for a
+    /// force spread over all of them; 0 is rigid [m/N].
+    #[serde(default)]
+    pub compliance: f64,
     /// Part of its wobble that such a body loses in a 60th of a second, 0 to 1.
     #[serde(default = "tenth")]
     pub damping: f64,
@@ -60,9 +63,9 @@ pub struct BodyDescription {
     /// Mass, instead of the density [kg].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass: Option<f64>,
-    /// Coulomb friction coefficient, 0.5 by default; walls have 0. Two surfaces have the root of the product of theirs,
-    /// the larger restitution, the larger rolling friction.
-    #[serde(default = "half")]
+    /// Coulomb friction coefficient, 0.5 by default as for walls. Two surfaces have both combined by
+    /// `contacts.friction_rule` (by default the root of the product), the larger restitution, the larger rolling friction.
+    #[serde(default = "friction")]
     pub friction: f64,
     /// Friction coefficient while sliding; left out, the same.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -82,12 +85,27 @@ pub struct BodyDescription {
     /// Collision layers it collides with; left out, all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub collides_with: Option<Vec<u8>>,
+    /// Collision group: bodies of the same group above 0 always collide, below 0 never, whatever their layers; 0 is none.
+    #[serde(default)]
+    pub collision_group: i32,
+    /// Whether it is a sensor: it reports what it touches and pushes nothing. It must not be dynamic.
+    #[serde(default)]
+    pub sensor: bool,
+    /// A number of your own, handed back with the body.
+    #[serde(default)]
+    pub user_data: u64,
     /// Whether it turns.
     #[serde(default)]
     pub rotation: RotationRule,
     /// Factor on gravity.
     #[serde(default = "one")]
     pub gravity_factor: f64,
+    /// Rate at which the velocity decays, as by a resistance of linear_damping x mass [1/s].
+    #[serde(default)]
+    pub linear_damping: f64,
+    /// Rate at which the angular velocity decays [1/s].
+    #[serde(default)]
+    pub angular_damping: f64,
     /// Script of a kinematic body.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motion: Option<MotionDescription>,
@@ -105,7 +123,7 @@ pub enum BodySolver {
     #[default]
     Pose,
     /// Every lattice sample is a particle, drawn back to the shape (Macklin et al. 2014): soft where its
-    /// stiffness is below 1. Its contacts are those of particles, with normals of the signed distance.
+    /// compliance is above 0. Its contacts are those of particles, with normals of the signed distance.
     ShapeMatching,
 }
 
@@ -191,76 +209,6 @@ pub enum Heap {
     Pyramid,
 }
 
-/// A joint between two bodies, or a body and the world.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct JointDescription {
-    /// Hinge, rod or rope.
-    pub kind: JointRule,
-    /// Name of the first body.
-    pub body: String,
-    /// Name of the second body; left out, the world.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub other: Option<String>,
-    /// Anchor on the first body, where the scene starts [m].
-    pub at: [f64; 2],
-    /// Anchor on the second body or in the world, where the scene starts; left out, `at` [m].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub other_at: Option<[f64; 2]>,
-    /// Length of a rod or rope; left out, the distance of its anchors [m].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub length: Option<f64>,
-    /// Inverse stiffness of a rod or rope, 0 is rigid [m/N].
-    #[serde(default)]
-    pub compliance: f64,
-    /// Angular velocity that the motor of a hinge wants [degrees/s].
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub motor_speed_deg: Option<f64>,
-    /// Largest torque of the motor [N m].
-    #[serde(default = "boundless")]
-    pub motor_torque: f64,
-    /// Whether the two bodies collide with each other; left out, those at a rope do, and others do not.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub collide_connected: Option<bool>,
-}
-
-impl JointDescription {
-    /// A joint between a body and the world at a point [m].
-    pub fn new(kind: JointRule, body: &str, at: [f64; 2]) -> Self {
-        JointDescription {
-            kind,
-            body: body.to_owned(),
-            other: None,
-            at,
-            other_at: None,
-            length: None,
-            compliance: 0.0,
-            motor_speed_deg: None,
-            motor_torque: boundless(),
-            collide_connected: None,
-        }
-    }
-
-    /// Whether the two bodies collide with each other.
-    pub fn collide_connected(&self) -> bool {
-        self.collide_connected.unwrap_or(self.kind == JointRule::Rope)
-    }
-}
-
-/// What a joint keeps.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum JointRule {
-    /// The anchors coincide.
-    Hinge,
-    /// The anchors keep their distance.
-    Rod,
-    /// The anchors never come farther apart than the length.
-    Rope,
-}
-
 fn dynamic() -> BodyKind {
     BodyKind::Dynamic
 }
@@ -273,8 +221,8 @@ fn tenth() -> f64 {
     0.1
 }
 
-fn half() -> f64 {
-    0.5
+fn friction() -> f64 {
+    FRICTION
 }
 
 fn one() -> f64 {
@@ -287,8 +235,4 @@ fn one_row() -> u32 {
 
 fn first_layer() -> Vec<u8> {
     vec![0]
-}
-
-fn boundless() -> f64 {
-    1e30
 }

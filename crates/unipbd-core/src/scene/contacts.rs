@@ -21,6 +21,8 @@ pub struct ContactDescription {
     /// Iterations in a substep, as many before the liquid pushes the bodies as after. In a high heap one more costs
     /// less than another substep and calms it sooner.
     pub iterations: u32,
+    /// How the friction coefficients of two surfaces combine.
+    pub friction_rule: FrictionRule,
     /// Whether bodies at rest sleep: they are held still until something touches or pushes them.
     pub sleep: bool,
     /// Speed of the fastest point of a body below which it may sleep, relative to sqrt(gravity x size of the body).
@@ -43,12 +45,44 @@ pub enum ContactMethod {
     SplitJacobi,
 }
 
+/// How the friction coefficients of two surfaces combine.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum FrictionRule {
+    /// The root of the product: one smooth side makes a smooth contact.
+    #[default]
+    GeometricMean,
+    /// Half of the sum.
+    Average,
+    /// The product.
+    Multiply,
+    /// The smaller one.
+    Minimum,
+    /// The larger one.
+    Maximum,
+}
+
+impl FrictionRule {
+    /// The coefficient of two surfaces with these.
+    pub fn combine(self, a: f64, b: f64) -> f64 {
+        match self {
+            FrictionRule::GeometricMean => (a * b).sqrt(),
+            FrictionRule::Average => 0.5 * (a + b),
+            FrictionRule::Multiply => a * b,
+            FrictionRule::Minimum => a.min(b),
+            FrictionRule::Maximum => a.max(b),
+        }
+    }
+}
+
 impl Default for ContactDescription {
     fn default() -> Self {
         ContactDescription {
             method: ContactMethod::GaussSeidel,
             relaxation: OVER_RELAXATION,
             iterations: 2,
+            friction_rule: FrictionRule::default(),
             sleep: true,
             sleep_speed: SLEEP_SPEED,
             sleep_delay: SLEEP_DELAY,

@@ -28,10 +28,14 @@ pub struct Rope {
     /// substeps.
     #[serde(default)]
     pub tethers: Tethers,
-    /// Name of a body that the last end is fixed to. Where the first end is held, the body never comes
-    /// farther from it than the rope is long; the rope's own weight does not pull at the body.
+    /// Name of a body that the last end is fixed to. The body never comes farther from the first end than the rope is
+    /// long, where that end is held, carried by a script, or fixed to another body; the rope's own weight does not pull
+    /// at the body.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub body: Option<String>,
+    /// Name of a body that the first end is fixed to, in the same way.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub from_body: Option<String>,
 }
 
 /// Ends of a rope that are held.

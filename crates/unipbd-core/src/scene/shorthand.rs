@@ -1,7 +1,7 @@
 //! Short ways to write scenes in Rust.
 
 use super::{Block, BodyDescription, BodySolver, HalfPlane, Liquid, Obstacle, RotationRule, Side, Slip, Smoke, Tank};
-use crate::scene::BodyKind;
+use crate::scene::bodies::{BodyKind, FRICTION};
 
 impl Liquid {
     /// A liquid of this rest density [kg/m^2], everything else as by default.
@@ -25,23 +25,23 @@ impl Block {
 }
 
 impl HalfPlane {
-    /// A wall at rest through a point [m], without friction; the normal points towards the particles.
+    /// A wall at rest through a point [m]; the normal points towards the particles.
     pub fn new(point: [f64; 2], normal: [f64; 2]) -> Self {
-        HalfPlane { name: String::new(), point, normal, velocity: [0.0; 2], friction: 0.0, slip: Slip::Free }
+        HalfPlane { name: String::new(), point, normal, velocity: [0.0; 2], friction: None, slip: Slip::Free }
     }
 }
 
 impl Tank {
-    /// A container without friction, open at the top, from its lower left to its upper right corner [m].
+    /// A container, open at the top, from its lower left to its upper right corner [m].
     pub fn new(min: [f64; 2], max: [f64; 2]) -> Self {
-        Tank { name: String::new(), min, max, open: vec![Side::Top], friction: 0.0, slip: Slip::Free }
+        Tank { name: String::new(), min, max, open: vec![Side::Top], friction: None, slip: Slip::Free }
     }
 }
 
 impl Obstacle {
-    /// A solid rectangle without friction, from its lower left to its upper right corner [m].
+    /// A solid rectangle, from its lower left to its upper right corner [m].
     pub fn new(min: [f64; 2], max: [f64; 2]) -> Self {
-        Obstacle { name: String::new(), min, max, friction: 0.0, slip: Slip::Free }
+        Obstacle { name: String::new(), min, max, friction: None, slip: Slip::Free }
     }
 }
 
@@ -67,7 +67,7 @@ impl BodyDescription {
             name: String::new(),
             kind: BodyKind::Dynamic,
             solver: BodySolver::Pose,
-            stiffness: 1.0,
+            compliance: 0.0,
             damping: 0.1,
             radius: None,
             size: None,
@@ -78,7 +78,7 @@ impl BodyDescription {
             spin_deg: 0.0,
             density: 1000.0,
             mass: None,
-            friction: 0.5,
+            friction: FRICTION,
             kinetic_friction: None,
             rolling_friction: 0.0,
             restitution: 0.0,
@@ -87,6 +87,11 @@ impl BodyDescription {
             collides_with: None,
             rotation: RotationRule::Free,
             gravity_factor: 1.0,
+            linear_damping: 0.0,
+            angular_damping: 0.0,
+            collision_group: 0,
+            sensor: false,
+            user_data: 0,
             motion: None,
             copies: None,
         }

@@ -1,11 +1,13 @@
 use serde::{Deserialize, Serialize};
 
+use super::bodies::FRICTION;
+
 /// A static straight wall without end; particles stay on the side the normal points to.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct HalfPlane {
-    /// Name under which the force of the fluids on it is reported; left out, the force is not measured.
+    /// Name under which the force of fluids and bodies on it is reported; left out, the force is not measured.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub name: String,
     /// A point on the wall [m].
@@ -16,9 +18,10 @@ pub struct HalfPlane {
     /// [m/s].
     #[serde(default)]
     pub velocity: [f64; 2],
-    /// Coulomb friction coefficient; a body on it has the root of the product with its own.
-    #[serde(default)]
-    pub friction: f64,
+    /// Coulomb friction coefficient; left out, 0.5 for bodies and 0 for particles. A body on it has both coefficients
+    /// combined by `contacts.friction_rule`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction: Option<f64>,
     /// Whether a fluid with a kinematic viscosity slips along it.
     #[serde(default)]
     pub slip: Slip,
@@ -29,7 +32,7 @@ pub struct HalfPlane {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Tank {
-    /// Name under which the force of the fluids on it is reported; left out, the force is not measured; its sides are `NAME left` and so on.
+    /// Name under which the force of fluids and bodies on it is reported; left out, the force is not measured; its sides are `NAME left` and so on.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub name: String,
     /// Lower left corner [m].
@@ -39,9 +42,10 @@ pub struct Tank {
     /// Sides without a wall.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub open: Vec<Side>,
-    /// Coulomb friction coefficient; a body on it has the root of the product with its own.
-    #[serde(default)]
-    pub friction: f64,
+    /// Coulomb friction coefficient; left out, 0.5 for bodies and 0 for particles. A body on it has both coefficients
+    /// combined by `contacts.friction_rule`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction: Option<f64>,
     /// Whether a fluid with a kinematic viscosity slips along it.
     #[serde(default)]
     pub slip: Slip,
@@ -52,19 +56,25 @@ pub struct Tank {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Obstacle {
-    /// Name under which the force of the fluids on it is reported; left out, the force is not measured.
+    /// Name under which the force of fluids and bodies on it is reported; left out, the force is not measured.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub name: String,
     /// Lower left corner [m].
     pub min: [f64; 2],
     /// Upper right corner [m].
     pub max: [f64; 2],
-    /// Coulomb friction coefficient; a body on it has the root of the product with its own.
-    #[serde(default)]
-    pub friction: f64,
+    /// Coulomb friction coefficient; left out, 0.5 for bodies and 0 for particles. A body on it has both coefficients
+    /// combined by `contacts.friction_rule`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub friction: Option<f64>,
     /// Whether a fluid with a kinematic viscosity slips along it.
     #[serde(default)]
     pub slip: Slip,
+}
+
+/// The coefficient that bodies feel on a wall with this `friction`.
+pub(crate) fn body_friction(friction: Option<f64>) -> f64 {
+    friction.unwrap_or(FRICTION)
 }
 
 /// A side of a rectangle.

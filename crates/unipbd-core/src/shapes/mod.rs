@@ -16,7 +16,7 @@ use crate::math::Vector64;
 use std::f64::consts::{PI, TAU};
 
 /// The outline of a solid, in its own coordinates.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum Shape {
     /// A disc about the origin.
     Disc {

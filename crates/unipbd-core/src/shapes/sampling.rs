@@ -4,7 +4,7 @@ use super::Shape;
 use crate::math::Vector64;
 
 /// Points that represent equal parts of a shape.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Samples {
     /// Points, in the coordinates of the shape [m]; their mean is the centroid.
     pub points: Vec<Vector64>,

@@ -13,7 +13,7 @@ pub(super) fn to_words(rigid: &RigidBodies) -> Vec<u64> {
 }
 
 /// The bodies from words, if they match the bodies of the run.
-pub(super) fn from_words(words: &[u64], running: &RigidBodies) -> Result<RigidBodies, StateError> {
+pub(super) fn from_words(words: &[u64], running: &RigidBodies, spacing: f64) -> Result<RigidBodies, StateError> {
     let (&length, words) = words.split_first().ok_or_else(|| damaged("its bodies are missing"))?;
     let mut bytes: Vec<u8> = words.iter().flat_map(|word| word.to_le_bytes()).collect();
     if length > bytes.len() as u64 {
@@ -21,5 +21,5 @@ pub(super) fn from_words(words: &[u64], running: &RigidBodies) -> Result<RigidBo
     }
     bytes.truncate(length as usize);
     let rigid: RigidBodies = postcard::from_bytes(&bytes).map_err(|_| damaged("its bodies make no sense"))?;
-    running.at_saved(rigid).ok_or_else(|| damaged("its bodies are not those of the run"))
+    running.at_saved(rigid, spacing).ok_or_else(|| damaged("its bodies are not those of the run"))
 }

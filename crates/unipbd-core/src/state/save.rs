@@ -2,13 +2,14 @@ use super::error::damaged;
 use super::structure::structure;
 use super::{Section, State, StateError, bodies};
 use crate::coupling::RigidBodies;
-use crate::math::{Vector, real, wide};
+use crate::math::{Vector, Vector64, real, wide};
 use crate::scene::crowd;
 use crate::step::{Clock, Solver};
 
 const EMITTERS: &str = "emitters";
 const SMOKE: &str = "smoke";
 const BODIES: &str = "bodies";
+const GRAVITY: &str = "gravity";
 
 /// Farthest place that a state may hold [spacings]: a run that gets there has long been of no use.
 const FARTHEST: f64 = 1e9;
@@ -34,6 +35,8 @@ impl Solver {
         if let Some(rigid) = &parts.rigid {
             section(BODIES, bodies::to_words(rigid));
         }
+        let gravity = parts.exact_gravity;
+        section(GRAVITY, vec![gravity.x.to_bits(), gravity.y.to_bits()]);
         for group in &parts.groups {
             section(group.name(), group.save());
         }
@@ -69,7 +72,12 @@ impl Solver {
         }
         if rigid.is_some() {
             next();
-            world.parts.rigid = rigid;
+        }
+        let replanned = rigid.as_ref().map(RigidBodies::has_followers)
+            != world.parts.rigid.as_ref().map(RigidBodies::has_followers);
+        world.parts.rigid = rigid;
+        if let Some(gravity) = gravity_of(next()).filter(|gravity| *gravity != world.parts.exact_gravity) {
+            world.set_gravity(gravity);
         }
         for group in &mut world.parts.groups {
             group.restore(next());
@@ -78,16 +86,22 @@ impl Solver {
         let generation = generation.max(state.clock.generation) + 1;
         world.clock = Clock { generation, ..state.clock };
         world.parts.particles.clone_from(&state.particles);
-        self.on_threads(|world| world.restore_list(&state.list));
+        self.on_threads(|world| {
+            if replanned {
+                world.replan();
+            }
+            world.restore_list(&state.list);
+        });
         Ok(())
     }
 
-    /// The bodies of a state, if the run has bodies.
+    /// The bodies of a state, if it has any.
     fn saved_bodies(&self, state: &State) -> Result<Option<RigidBodies>, StateError> {
-        let Some(running) = &self.world.parts.rigid else { return Ok(None) };
-        let section = state.sections.iter().find(|section| section.name == BODIES);
-        let words = section.map_or(&[][..], |section| &section.words);
-        bodies::from_words(words, running).map(Some)
+        let parts = &self.world.parts;
+        // Bodies may have been added to a scene without any, or not yet.
+        let running = parts.rigid.as_ref().unwrap_or(&parts.no_bodies);
+        let Some(section) = state.sections.iter().find(|section| section.name == BODIES) else { return Ok(None) };
+        bodies::from_words(&section.words, running, parts.spacing).map(Some)
     }
 
     /// Whether the state belongs to a run like this one.
@@ -109,7 +123,11 @@ impl Solver {
     fn accept_sections(&self, state: &State) -> Result<(), StateError> {
         let parts = &self.world.parts;
         let names = parts.emitters.iter().map(|_| EMITTERS).chain(parts.smoke.iter().map(|_| SMOKE));
-        let names = names.chain(parts.rigid.iter().map(|_| BODIES));
+        let with_bodies = state.sections.iter().any(|section| section.name == BODIES);
+        if !with_bodies && parts.scene_bodies > 0 {
+            return Err(damaged("its bodies are missing"));
+        }
+        let names = names.chain(with_bodies.then_some(BODIES)).chain([GRAVITY]);
         let names = names.chain(parts.groups.iter().map(|group| group.name()));
         if !names.eq(state.sections.iter().map(|section| &section.name[..])) {
             return Err(damaged("it lacks a part of the run"));
@@ -118,6 +136,10 @@ impl Solver {
             && state.sections.first().is_none_or(|section| !emitters.accepts(&section.words))
         {
             return Err(damaged("its emitters make no sense"));
+        }
+        let gravity = state.sections.iter().find(|section| section.name == GRAVITY);
+        if gravity.is_none_or(|section| gravity_of(&section.words).is_none()) {
+            return Err(damaged("its gravity makes no sense"));
         }
         let smoke = state.sections.iter().find(|section| section.name == SMOKE && parts.smoke.is_some());
         let length = smoke.map(|section| section.words.first().copied().map_or(f64::NAN, f64::from_bits));
@@ -174,4 +196,11 @@ impl Solver {
         }
         Ok(())
     }
+}
+
+/// Gravity from its section [m/s^2]; `None` if it is not finite in single precision.
+fn gravity_of(words: &[u64]) -> Option<Vector64> {
+    let &[x, y] = words else { return None };
+    let gravity = Vector64::new(f64::from_bits(x), f64::from_bits(y));
+    [gravity.x, gravity.y].into_iter().all(|value| real(value).is_finite()).then_some(gravity)
 }

@@ -23,6 +23,7 @@ pub(super) fn structure(solver: &Solver) -> Vec<String> {
     lines.push(format!("liquids that {}sleep", if optional.rest { "" } else { "do not " }));
     let emitters = parts.emitters.as_ref().map_or_else(Vec::new, |emitters| emitters.columns().collect());
     lines.push(format!("{} emitters with {emitters:?} columns", emitters.len()));
+    lines.push(format!("bodies and joints of the scene, mark {:x}", parts.scene_mark));
     lines.push(format!("{} constraint groups", parts.groups.len()));
     lines.extend(parts.groups.iter().map(|group| format!("a constraint group \"{}\"", group.name())));
     lines

@@ -132,10 +132,17 @@ impl Solver {
         &self.world.parts.walls
     }
 
-    /// Mean forces of the fluids in the last frame on the walls that have a name; those on bodies are
-    /// [`Body::fluid_force`](crate::Body::fluid_force). All zero before the first frame and after a restore.
+    /// Mean forces in the last frame on the walls that have a name, of fluids and bodies together and apart; those on
+    /// bodies are [`Body::fluid_force`](crate::rigid::Body::fluid_force) and
+    /// [`contact_force`](crate::rigid::Body::contact_force). Those of fluids are zero before the first frame and after a
+    /// restore.
     pub fn wall_forces(&self) -> Vec<WallForce> {
         self.world.wall_forces()
+    }
+
+    /// Joints by index, with their loads; those that are broken or taken away keep their place.
+    pub fn joints(&self) -> Vec<crate::rigid::contact::JointState> {
+        self.world.parts.rigid.as_ref().map_or_else(Vec::new, |rigid| rigid.contacts.joints().collect())
     }
 
     /// Takes the events since the last call.

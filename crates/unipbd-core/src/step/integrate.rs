@@ -5,7 +5,7 @@
 //! out to 10^5 spacings from the origin, where x - x_n would lose gravity altogether.
 
 use crate::constraints::Corrections;
-use crate::math::{Real, Vector, wide};
+use crate::math::{Real, Vector, Vector64, vector, wide};
 use crate::parallel::{CHUNK_ROWS, Parallelism};
 use crate::particles::{Particles, displaced};
 use crate::periodic::Periodic;
@@ -18,8 +18,17 @@ use std::ops::Range;
 pub struct BodyForce {
     /// Acceleration [m/s^2].
     pub acceleration: Vector,
+    /// Factor on gravity.
+    pub factor: f64,
     /// Whether it is multiplied by the particle's temperature (Boussinesq buoyancy).
     pub thermal: bool,
+}
+
+impl BodyForce {
+    /// Gravity [m/s^2] times a factor.
+    pub fn new(gravity: Vector64, factor: f64, thermal: bool) -> BodyForce {
+        BodyForce { acceleration: vector(gravity * factor), factor, thermal }
+    }
 }
 
 /// u = dt v + dt^2 a, x = x_n + u, for every row that has inertia; kinematic rows keep their velocity.

@@ -34,6 +34,29 @@ impl World {
         self.wake_near(&places);
     }
 
+    /// Wakes all rows and bodies; they may fall asleep again.
+    pub fn wake_all(&mut self) {
+        if self.parts.particles.asleep() > 0 {
+            self.parts.particles.set_asleep(0, 0);
+            self.rows_rearranged();
+        }
+        if let Some(sleep) = &mut self.parts.sleep {
+            sleep.forget();
+        }
+        if let Some(rigid) = &mut self.parts.rigid {
+            rigid.contacts.wake_all(&mut rigid.bodies);
+            rigid.bodies.refresh_views();
+        }
+    }
+
+    /// Wakes a body with all that sleeps with it.
+    pub(super) fn wake_body(&mut self, body: u32) {
+        let Some(rigid) = &mut self.parts.rigid else { return };
+        rigid.contacts.wake(&mut rigid.bodies, body);
+        rigid.bodies.refresh_views();
+        self.wake_around_bodies();
+    }
+
     /// Wakes all rows and disables sleep.
     pub(super) fn wake_for_good(&mut self) {
         if self.parts.particles.asleep() > 0 {

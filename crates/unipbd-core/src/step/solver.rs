@@ -109,6 +109,21 @@ impl Solver {
         self.world.replan();
     }
 
+    /// Wakes all bodies and liquids that sleep.
+    pub fn wake(&mut self) {
+        self.on_threads(World::wake_all);
+    }
+
+    /// Wakes a body, the bodies it sleeps with, and the liquid around them; tells whether there is such a body. Bodies
+    /// are named by their place in [`Solver::bodies`].
+    pub fn wake_body(&mut self, body: u32) -> bool {
+        let there = self.bodies().get(body as usize).is_some_and(|body| !body.removed);
+        if there {
+            self.on_threads(|world| world.wake_body(body));
+        }
+        there
+    }
+
     /// The row of the particle with this id, if it exists. Rows change from step to step, ids never do.
     ///
     /// Takes time proportional to the number of particles; for many lookups go once through

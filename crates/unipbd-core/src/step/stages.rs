@@ -105,6 +105,7 @@ impl World {
         let parts = &mut self.parts;
         let Some(rigid) = &mut parts.rigid else { return };
         rigid.contacts.run_on(parts.parallelism);
+        rigid.carry_anchors(&parts.particles, &self.rows);
         rigid.predict(self.clock.dt, self.clock.time, wide(parts.gravity));
         rigid.iterate_contacts();
     }

@@ -12,10 +12,11 @@ use super::{FrameReport, SolverError, Stage};
 use crate::constraints::{ConstraintGroup, CorrectionParts, Corrections, Needs, Substep};
 use crate::coupling::RigidBodies;
 use crate::effects::{Changes, Effect, SmokeAdvection};
-use crate::math::{Real, Vector, Vector64};
+use crate::math::{Real, Vector, Vector64, vector};
 use crate::neighbors::{Neighbors, SavedList, SearchPositions};
 use crate::observe::{Event, Material};
 use crate::parallel::Parallelism;
+use crate::phase::MaterialIndex;
 use crate::particles::Particles;
 use crate::pressure_grid::PressureGrid;
 use crate::rows::RowIndex;
@@ -50,6 +51,15 @@ pub(crate) struct Parts {
     /// rest lattice is slightly too small, and the multipliers are too large by the same factor.
     pub pressure_scale: f64,
     pub gravity: Vector,
+    /// The same in double precision [m/s^2].
+    pub exact_gravity: Vector64,
+    /// Number of bodies in the scene, and a mark of them and their joints.
+    pub scene_bodies: usize,
+    pub scene_mark: u64,
+    /// No bodies, between the walls of the scene: what the first body is added to.
+    pub no_bodies: RigidBodies,
+    /// Material of the samples of bodies, where fluids see them.
+    pub sample_material: Option<MaterialIndex>,
     pub spacing: f64,
     pub frame_time: f64,
     pub seed: u64,
@@ -167,6 +177,16 @@ impl World {
         world.wall_forces.clone_from(&world.wall_impulses);
         world.replan();
         world
+    }
+
+    /// Changes gravity [m/s^2]; everything wakes.
+    pub fn set_gravity(&mut self, gravity: Vector64) {
+        let parts = &mut self.parts;
+        (parts.gravity, parts.exact_gravity) = (vector(gravity), gravity);
+        for force in parts.forces.iter_mut().filter(|force| force.factor != 0.0) {
+            *force = BodyForce::new(gravity, force.factor, force.thermal);
+        }
+        parts.effects.iter_mut().for_each(|effect| effect.set_gravity(vector(gravity)));
     }
 
     fn clear_wall_impulses(&mut self) {

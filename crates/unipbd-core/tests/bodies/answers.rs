@@ -9,7 +9,7 @@ use unipbd_core::{BuildOptions, Solver};
 const ALL: [Substeps; 4] = [Substeps::Auto, Substeps::Fixed(1), Substeps::Fixed(4), Substeps::Fixed(16)];
 
 fn scene(substeps: Substeps, body: Vec<BodyDescription>, floor: Option<f64>) -> Scene {
-    let plane = |friction| HalfPlane { friction, ..HalfPlane::new([0.0, 0.0], [0.0, 1.0]) };
+    let plane = |friction| HalfPlane { friction: Some(friction), ..HalfPlane::new([0.0, 0.0], [0.0, 1.0]) };
     Scene {
         spacing: 0.05,
         gravity: [0.0, -9.81],

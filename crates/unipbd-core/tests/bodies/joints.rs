@@ -6,7 +6,7 @@ use unipbd_core::rigid::{MassSpec, Surface};
 use unipbd_core::shapes::Shape;
 
 fn hinge(motor: Option<Motor>) -> JointKind {
-    JointKind::Hinge { motor }
+    JointKind::Hinge { motor, limits: None }
 }
 
 fn to_world(body: u32, anchor: Vector64, place: Vector64, kind: JointKind) -> Joint {
@@ -116,7 +116,7 @@ fn spring_stretches_by_its_compliance_and_swings_at_its_frequency() {
     let (mass, compliance) = (100.0, 1e-4);
     let spec = BodySpec { mass: MassSpec::Mass(mass), rotation: Rotation::Locked, ..unit_box(at(0.0, -2.0)) };
     world.add(spec);
-    let kind = JointKind::Distance { length: 2.0, compliance, rule: DistanceRule::Exact };
+    let kind = JointKind::Distance { length: 2.0, compliance, damping: 0.0, rule: DistanceRule::Exact };
     world.contacts.add_joint(to_world(0, at(0.0, 0.0), at(0.0, 0.0), kind), false);
     let (mut sum, mut lowest) = (0.0, 0.0f64);
     for _ in 0..600 {
@@ -133,7 +133,7 @@ fn spring_stretches_by_its_compliance_and_swings_at_its_frequency() {
 fn rope_holds_at_its_length_and_is_slack_below() {
     let mut world = World::new(&[]);
     world.add(unit_box(at(0.0, -0.5)));
-    let kind = JointKind::Distance { length: 2.0, compliance: 0.0, rule: DistanceRule::AtMost };
+    let kind = JointKind::Distance { length: 2.0, compliance: 0.0, damping: 0.0, rule: DistanceRule::AtMost };
     world.contacts.add_joint(to_world(0, at(0.0, 0.0), at(0.0, 0.0), kind), false);
     world.run(0.25);
     let fallen = -0.5 - world.position(0).y;

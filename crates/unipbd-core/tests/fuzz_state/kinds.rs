@@ -34,7 +34,7 @@ fn tied() -> Scene {
         scene.body.push(BodyDescription { name: "ball".into(), ..BodyDescription::disc(0.2, [1.5, 1.5]) });
         let soft = BodyDescription {
             solver: BodySolver::ShapeMatching,
-            stiffness: 0.5,
+            compliance: 1e-6,
             ..BodyDescription::disc(0.3, [0.6, 1.0])
         };
         scene.body.push(soft);

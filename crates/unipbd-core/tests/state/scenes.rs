@@ -22,7 +22,7 @@ pub fn points(material: &str, positions: &[[f64; 2]]) -> Points {
 }
 
 fn tank(width: f64) -> Tank {
-    Tank { open: Vec::new(), friction: 0.1, ..Tank::new([0.0, 0.0], [width, 4.0]) }
+    Tank { open: Vec::new(), friction: Some(0.1), ..Tank::new([0.0, 0.0], [width, 4.0]) }
 }
 
 /// A column of water collapses.

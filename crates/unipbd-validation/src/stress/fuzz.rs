@@ -96,7 +96,7 @@ pub fn random_scene(seed: u64) -> Scene {
             min: [0.0, 0.0],
             max: [width * spacing, height * spacing],
             open: Vec::new(),
-            friction: random.range(0.0, 1.0),
+            friction: Some(random.range(0.0, 1.0)),
             slip: if random.chance(0.3) { Slip::None } else { Slip::Free },
         }],
         ..Scene::default()

@@ -19,7 +19,7 @@ const CHANGES: &[Change] = &[
     |scene, index| scene.gas.get_mut(index).is_some_and(|gas| change(&mut gas.kinematic_viscosity, 0.0)),
     |scene, index| scene.liquid.get_mut(index).is_some_and(|liquid| change(&mut liquid.surface, LiquidSurface::Free)),
     |scene, index| scene.liquid.get_mut(index).is_some_and(|liquid| change(&mut liquid.density, 1000.0)),
-    |scene, index| scene.tank.get_mut(index).is_some_and(|tank| change(&mut tank.friction, 0.0)),
+    |scene, index| scene.tank.get_mut(index).is_some_and(|tank| change(&mut tank.friction, None)),
     |scene, index| scene.tank.get_mut(index).is_some_and(|tank| change(&mut tank.slip, Slip::Free)),
     |scene, index| scene.body.get_mut(index).is_some_and(|body| change(&mut body.angle_deg, 0.0)),
     |scene, index| index == 0 && change(&mut scene.fps, 60.0),

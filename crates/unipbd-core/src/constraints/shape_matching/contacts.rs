@@ -78,7 +78,7 @@ impl ShapeMatching {
             let (normal, depth) = self.way_out(a, b, apart);
             let starts = [a, b].map(|(m, k)| wide(now.particles.starts()[self.rows[m][k] as usize]));
             let old = depth + (apart - (starts[0] - starts[1])).dot(normal);
-            let surface = first.surface.combined(&second.surface);
+            let surface = first.surface.combined(&second.surface, self.rule);
             touches.push(Touch::new((a, Some(b)), normal, old, surface));
         }
     }
@@ -103,7 +103,7 @@ impl ShapeMatching {
         let (place, start) = (self.places[a.0][a.1], wide(now.particles.starts()[row]));
         for hit in now.walls.touches(vector(place), super::radius(self.spacing)) {
             let (normal, depth) = (wide(hit.normal), f64::from(hit.depth));
-            let surface = self.members[a.0].surface.combined(&Surface::with_friction(f64::from(hit.friction)));
+            let surface = self.members[a.0].surface.combined(&Surface::with_friction(f64::from(hit.friction)), self.rule);
             let old = depth + (place - start).dot(normal);
             touches.push(Touch { wall: hit.measured, ..Touch::new((a, None), normal, old, surface) });
         }
@@ -186,7 +186,7 @@ impl ShapeMatching {
         let whole = member.inverse_mass * (1.0 / self.rows[m].len() as f64 + lever * lever / member.spread);
         let shares = (f64::from(counts.members[m]) / OVER_RELAXATION).max(1.0);
         let alone = member.inverse_mass * f64::from(counts.samples[m][k]);
-        let stiff = member.part(f64::from(now.dt));
+        let stiff = member.part(f64::from(now.dt), self.rounds);
         stiff * whole * shares + (1.0 - stiff) * alone
     }
 

@@ -5,8 +5,8 @@ use crate::rigid::{CollisionFilter, Elasticity, Surface};
 use crate::shapes::{Nearest, Shape};
 use std::ops::Range;
 
-/// The time in which a body takes back the part of its deformation that is its stiffness [s].
-const STIFFNESS_TIME: f64 = 1.0 / 60.0;
+/// The time in which a body loses the part of its wobble that is its damping [s].
+const DAMPING_TIME: f64 = 1.0 / 60.0;
 
 /// A body as particles: one whose shape is matched, or a rigid one that such bodies touch.
 pub struct Member {
@@ -20,8 +20,9 @@ pub struct Member {
     pub(super) inverse_mass: f64,
     /// Sum of the squared distances of the samples from the centre of mass [m^2].
     pub(super) spread: f64,
-    /// Part of its deformation that it takes back in a 60th of a second; none where a pose moves it.
-    stiffness: Option<f64>,
+    /// Compliance times mass, the inverse square of the frequency with which samples swing about the shape [s^2]; none
+    /// where a pose moves it.
+    softness: Option<f64>,
     /// Part of its wobble that it loses in a 60th of a second.
     damping: f64,
     pub(super) surface: Surface,
@@ -50,9 +51,10 @@ impl Member {
     ) -> Member {
         let distances = rest.iter().map(|&sample| shape.nearest(sample)).collect();
         let inverse_mass = rest.len() as f64 / mass;
-        let (stiffness, damping) = (elasticity.map(|how| how.stiffness), elasticity.map_or(0.0, |how| how.damping));
+        let softness = elasticity.map(|how| how.compliance * mass);
+        let damping = elasticity.map_or(0.0, |how| how.damping);
         let spread = rest.iter().map(|r| r.length_squared()).sum::<f64>().max(f64::MIN_POSITIVE);
-        Member { first, rest, damping, distances, spread, inverse_mass, stiffness, surface, filter }
+        Member { first, rest, damping, distances, spread, inverse_mass, softness, surface, filter }
     }
 
     pub(super) fn ids(&self) -> Range<u32> {
@@ -60,7 +62,7 @@ impl Member {
     }
 
     pub(super) fn is_matched(&self) -> bool {
-        self.stiffness.is_some()
+        self.softness.is_some()
     }
 
     /// theta = atan2(A21 - A12, A11 + A22), A = sum m (x - c) r^T.
@@ -74,21 +76,23 @@ impl Member {
         Fit { center, rotation: if rotation == Vector64::ZERO { Vector64::X } else { rotation } }
     }
 
-    /// Part of the way to the fit that a round goes in a substep of this length [s]; all of it where a pose moves
-    /// the body.
-    pub(super) fn part(&self, dt: f64) -> f64 {
-        let stiffness = self.stiffness.unwrap_or(1.0);
-        1.0 - (1.0 - stiffness).powf(dt / STIFFNESS_TIME / super::ROUNDS as f64)
+    /// Part of the way to the fit that one of so many rounds goes in a substep of this length [s]; all of it where a
+    /// pose moves the body.
+    ///
+    /// A substep leaves a/(1 + a) of the way with a = compliance mass / dt^2 (implicit Euler; Macklin et al. 2016): at
+    /// rest the samples lie where the spring balances gravity, whatever the length of the substep.
+    pub(super) fn part(&self, dt: f64, rounds: f64) -> f64 {
+        let soft = self.softness.unwrap_or(0.0) / (dt * dt);
+        1.0 - (soft / (1.0 + soft)).powf(1.0 / rounds)
     }
 
     /// Part of its wobble that it loses in a substep of this length [s].
     pub(super) fn damped(&self, dt: f64) -> f64 {
-        1.0 - (1.0 - self.damping).powf(dt / STIFFNESS_TIME)
+        1.0 - (1.0 - self.damping).powf(dt / DAMPING_TIME)
     }
 
-    /// Moves the samples towards the fit, as far as the stiffness goes in a substep of this length [s].
-    pub(super) fn pull_to_shape(&self, places: &mut [Vector64], dt: f64) {
-        let part = self.part(dt);
+    /// Moves the samples towards the fit, a part of the way.
+    pub(super) fn pull_to_shape(&self, places: &mut [Vector64], part: f64) {
         let Fit { center, rotation } = self.fit(places);
         for (place, r) in places.iter_mut().zip(&self.rest) {
             *place += (center + rotation.rotate(*r) - *place) * part;

@@ -3,7 +3,7 @@
 //!
 //! Every lattice sample is a particle with a mass of its own, seen by the density of fluids and by the contacts of
 //! particles. An iteration first takes overlap out ([`contacts`]), then moves the samples of each
-//! body towards the best rigid fit of its shape, by a part of the way that is its stiffness. Both keep momentum;
+//! body towards the best rigid fit of its shape, by a part of the way that follows from its compliance. Both keep momentum;
 //! the spin that the fit takes by moving samples along chords is given back to the velocities.
 
 mod contacts;
@@ -13,6 +13,7 @@ pub use member::Member;
 
 use super::{ConstraintGroup, Corrections, Needs, Substep};
 use crate::math::{Real, Vector, Vector64, vector, wide};
+use crate::scene::FrictionRule;
 use contacts::Touch;
 use member::Fit;
 
@@ -23,6 +24,10 @@ const ROUNDS: usize = 2;
 pub struct ShapeMatching {
     members: Vec<Member>,
     spacing: f64,
+    /// Rounds in a substep: those of all iterations.
+    rounds: f64,
+    /// How friction coefficients combine.
+    rule: FrictionRule,
     /// Rows of the samples, member by member.
     rows: Vec<Vec<u32>>,
     /// Where the samples are in this iteration [m].
@@ -34,12 +39,14 @@ pub struct ShapeMatching {
 }
 
 impl ShapeMatching {
-    /// A group of these bodies, in ascending order of their samples' ids.
-    pub fn new(members: Vec<Member>, spacing: f64) -> Self {
+    /// A group of these bodies, in ascending order of their samples' ids, for so many iterations in a substep.
+    pub fn new(members: Vec<Member>, spacing: f64, iterations: u32, rule: FrictionRule) -> Self {
         let count = members.len();
         ShapeMatching {
             members,
             spacing,
+            rounds: ROUNDS as f64 * f64::from(iterations),
+            rule,
             rows: vec![Vec::new(); count],
             places: vec![Vec::new(); count],
             fits: vec![Fit::default(); count],
@@ -71,7 +78,7 @@ impl ShapeMatching {
             };
             let before = spin(&self.places[k], &self.rows[k]);
             let member = &self.members[k];
-            member.pull_to_shape(&mut self.places[k], f64::from(now.dt));
+            member.pull_to_shape(&mut self.places[k], member.part(f64::from(now.dt), self.rounds));
             self.taken[k] += (before - spin(&self.places[k], &self.rows[k])) / member.inverse_mass;
         }
     }

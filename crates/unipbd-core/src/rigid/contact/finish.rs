@@ -49,7 +49,8 @@ impl Contacts {
                 self.wall_impulses[cache.wall as usize] -= push.linear;
             }
         }
-        for linked in &self.joints {
+        for linked in self.joints.iter_mut().filter(|linked| linked.is_live()) {
+            linked.load();
             let ((a, b), (on_a, on_b)) = (linked.bodies(), linked.kept_pushes());
             bodies.contact_loads[a as usize] += on_a.scaled(1.0 / self.dt);
             if b != NONE {

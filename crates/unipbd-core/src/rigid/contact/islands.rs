@@ -2,7 +2,7 @@
 //! while, and wake together. Impulses are kept, so that a woken pile keeps its state.
 
 use super::bounds::NONE;
-use super::joint::Linked;
+use super::linked::Linked;
 use super::manifold::Contact;
 use super::union_find::UnionFind;
 use crate::rigid::{Bodies, Twist};
@@ -29,6 +29,9 @@ const DRIFT: f64 = 4e-3;
 /// Part of the rest time for which the speed may have grown without a break: a body that begins to slide or to tip
 /// over grows faster in every frame, the jitter of a heap does not.
 const RISING: f64 = 0.5;
+/// Factor on the limit of the speed for a body that no contact presses: contacts jitter, joints do not, and at the
+/// apex of a swing every body is slow.
+const SWINGING: f64 = 1e-3;
 /// Growth of the speed in a frame that counts as one: a body that begins to slide gains 3 % in its thirtieth frame.
 const GROWTH: f64 = 1.01;
 /// Speed relative to the limit below which its growth is rounding.
@@ -47,6 +50,9 @@ pub(super) struct Islands {
     /// The island of each sleeping body.
     island: Vec<u32>,
     touching: UnionFind,
+    /// Whether a contact presses each body.
+    #[serde(skip)]
+    carried: Vec<bool>,
     /// The shortest rest time of each island, at its root.
     #[serde(skip)]
     least: Vec<f64>,
@@ -98,7 +104,8 @@ impl Islands {
                 touch(self, bodies, a, b);
             }
         }
-        for (a, b) in joints.iter().map(Linked::bodies).filter(|&(_, b)| b != NONE) {
+        let live = joints.iter().filter(|linked| linked.is_live());
+        for (a, b) in live.map(Linked::bodies).filter(|&(_, b)| b != NONE) {
             touch(self, bodies, a, b);
         }
         woken
@@ -123,6 +130,7 @@ impl Islands {
         settings: &SleepSettings,
         (frame_time, gravity): (f64, f64),
     ) -> bool {
+        self.note_carried(bodies.len(), contacts);
         self.measure_rest(bodies, settings, (frame_time, gravity));
         self.disturb_by_motors(bodies, joints);
         if !self.rest.iter().zip(&bodies.asleep).any(|(&rest, &asleep)| rest >= settings.delay && !asleep) {
@@ -150,8 +158,21 @@ impl Islands {
     fn unite_touching(&mut self, bodies: &Bodies, contacts: &[Contact], joints: &[Linked]) {
         self.touching.reset(bodies.len());
         let touching = contacts.iter().filter(|contact| contact.is_pressed()).map(|contact| (contact.a, contact.b));
-        for (a, b) in touching.chain(joints.iter().map(Linked::bodies)).filter(|&(_, b)| b != NONE) {
+        let joined = joints.iter().filter(|linked| linked.is_live()).map(Linked::bodies);
+        for (a, b) in touching.chain(joined).filter(|&(_, b)| b != NONE) {
             self.unite(bodies, a, b);
+        }
+    }
+
+    /// Bodies that something presses against: the others hang from joints, swing or fall.
+    fn note_carried(&mut self, bodies: usize, contacts: &[Contact]) {
+        self.carried.clear();
+        self.carried.resize(bodies, false);
+        for contact in contacts.iter().filter(|contact| contact.is_pressed()) {
+            self.carried[contact.a as usize] = true;
+            if contact.b != NONE {
+                self.carried[contact.b as usize] = true;
+            }
         }
     }
 
@@ -163,7 +184,7 @@ impl Islands {
             // The removal of old overlap moves a body, too, but that is no motion.
             self.drifts[id] += velocity.scaled(frame_time);
             let drift = self.drifts[id].linear.length() + self.drifts[id].angular.abs() * reach;
-            let limit = settings.speed * (gravity * size).sqrt();
+            let limit = settings.speed * (gravity * size).sqrt() * if self.carried[id] { 1.0 } else { SWINGING };
             let (slow, noise) = (speed < limit, speed < NOISE * limit);
             self.rising[id] =
                 if !noise && speed > GROWTH * self.speeds[id] { self.rising[id] + frame_time } else { 0.0 };

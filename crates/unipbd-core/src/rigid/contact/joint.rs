@@ -1,14 +1,6 @@
-//! Joints between two bodies, or a body and the world: hinges with motors, and distances.
-//!
-//! Equality constraints J u = 0 in the same split-Jacobi sweep as the contacts. Impulses act at the
-//! anchors at the start of a substep, and stop the motion of the anchors at its middle. As in leapfrog
-//! schemes (SHAKE, Ryckaert et al. 1977), this conserves the energy of a rotating body on a hinge. The remaining drift
-//! is removed from the positions alone. A distance with compliance is a spring, solved as in Macklin et al. 2016.
+//! Joints between two bodies, or a body and the world, as they are described and read.
 
-use super::bounds::NONE;
-use super::manifold::entry;
 use crate::math::Vector64;
-use crate::rigid::{InverseMass, Pose, Twist};
 
 /// The constraint of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -17,6 +9,8 @@ pub enum JointKind {
     Hinge {
         /// Optional motor for the relative angular velocity.
         motor: Option<Motor>,
+        /// Range of the angle of the first body minus that of the second [rad].
+        limits: Option<Limits>,
     },
     /// The distance of the anchors is constant.
     Distance {
@@ -24,8 +18,36 @@ pub enum JointKind {
         length: f64,
         /// Inverse stiffness [m/N]; 0 is rigid.
         compliance: f64,
+        /// Force per speed at which the anchors part, beside the stiffness [N s/m]; without compliance it has no effect.
+        damping: f64,
         /// Rod or rope.
         rule: DistanceRule,
+    },
+    /// The anchors coincide, and the bodies keep their angle.
+    Weld {
+        /// Angle of the first body minus that of the second [rad].
+        angle: f64,
+    },
+    /// The first anchor stays on a line through the second, and the bodies keep their angle.
+    Slider {
+        /// Direction of the line, of length 1, in the coordinates of the second body, or of the world.
+        axis: Vector64,
+        /// Angle of the first body minus that of the second [rad].
+        angle: f64,
+        /// Optional motor along the line, for the speed of the first anchor away from the second [m/s], [N].
+        motor: Option<Motor>,
+        /// Range of the place on the line [m].
+        limits: Option<Limits>,
+    },
+    /// A rope over two fixed wheels without mass: distance of the first anchor from the first wheel plus `ratio` times
+    /// that of the second anchor from the second never exceeds a length.
+    Pulley {
+        /// Places of the wheels in the world [m].
+        wheels: [Vector64; 2],
+        /// Length of the rope beside the stretch between the wheels [m].
+        length: f64,
+        /// Purchase: what the second side counts for.
+        ratio: f64,
     },
 }
 
@@ -38,13 +60,29 @@ pub enum DistanceRule {
     AtMost,
 }
 
-/// The motor of a hinge.
+/// The motor of a hinge or a slider.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Motor {
-    /// Target angular velocity of the first body relative to the second [rad/s].
+    /// Target velocity of the first body relative to the second [rad/s], [m/s].
     pub speed: f64,
-    /// Maximum torque [N m].
+    /// Maximum torque [N m], or force [N].
     pub max_torque: f64,
+}
+
+impl Motor {
+    /// Whether its numbers are sound.
+    pub(super) fn is_sound(&self) -> bool {
+        self.speed.is_finite() && self.max_torque >= 0.0
+    }
+}
+
+/// A range.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Limits {
+    /// Smallest value.
+    pub least: f64,
+    /// Largest value.
+    pub most: f64,
 }
 
 /// A joint; anchors are in body coordinates (from the centre of mass), or world coordinates.
@@ -62,181 +100,43 @@ pub struct Joint {
     pub kind: JointKind,
 }
 
-/// A joint with its state in the solver.
-#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
-pub(crate) struct Linked {
+impl Joint {
+    /// The motor, if it has one.
+    pub fn motor(&self) -> Option<Motor> {
+        match self.kind {
+            JointKind::Hinge { motor, .. } | JointKind::Slider { motor, .. } => motor,
+            _ => None,
+        }
+    }
+}
+
+/// Loads from which on a joint breaks: means over a frame.
+#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+pub struct Strength {
+    /// Largest force [N].
+    pub force: f64,
+    /// Largest torque about the anchor [N m].
+    pub torque: f64,
+}
+
+impl Strength {
+    /// It never breaks.
+    pub const BOUNDLESS: Strength = Strength { force: f64::INFINITY, torque: f64::INFINITY };
+}
+
+/// Readable state of a joint.
+#[derive(Clone, Debug, PartialEq)]
+pub struct JointState {
+    /// Name given in the scene; empty without one.
+    pub name: String,
+    /// The joint itself.
     pub joint: Joint,
-    /// Impulse on the first body: a vector for a hinge, or the component along the line in x [kg m].
-    pub impulse: Vector64,
-    /// Impulse of the motor [kg m^2].
-    pub motor: f64,
-    /// Arms of the anchors at the start of the substep (point of application of impulses) and at its middle.
-    arms: (Vector64, Vector64),
-    middle: (Vector64, Vector64),
-    /// Position of the first body's anchor relative to the second body's anchor, at the start of the substep [m].
-    offset: Vector64,
-    split: (InverseMass, InverseMass),
-    dt: f64,
-}
-
-impl Linked {
-    pub fn new(joint: Joint) -> Linked {
-        let (impulse, offset, arms) = (Vector64::ZERO, Vector64::ZERO, Default::default());
-        Linked { joint, impulse, motor: 0.0, arms, middle: arms, offset, split: Default::default(), dt: 0.0 }
-    }
-
-    /// Whether the impulses that last from substep to substep are finite.
-    pub fn is_finite(&self) -> bool {
-        self.impulse.is_finite() && self.motor.is_finite()
-    }
-
-    pub fn bodies(&self) -> (u32, u32) {
-        (self.joint.body, self.joint.other.unwrap_or(NONE))
-    }
-
-    /// Computes anchors and arms at these poses of the bodies.
-    fn place(&mut self, a: Pose, b: Pose) {
-        let arm = |pose: Pose, anchor: Vector64| Vector64::from_angle(pose.angle).rotate(anchor);
-        self.arms = (arm(a, self.joint.anchor), arm(b, self.joint.other_anchor));
-        self.middle = self.arms;
-        self.offset = (a.position + self.arms.0) - (b.position + self.arms.1);
-    }
-
-    /// Prepares a substep: the arms at its start, and at its middle with the bodies rotated by half of `displacements`.
-    pub fn prepare(&mut self, poses: &[Pose], displacements: &[Twist], split: &[InverseMass], dt: f64, scale: f64) {
-        let (a, b) = self.bodies();
-        let (of_a, of_b) = (entry(poses, a), entry(poses, b));
-        self.place(of_a, of_b);
-        let half = |pose: Pose, body: u32| pose.angle + 0.5 * entry(displacements, body).angular;
-        let turned = |angle: f64, anchor: Vector64| Vector64::from_angle(angle).rotate(anchor);
-        self.middle = (turned(half(of_a, a), self.joint.anchor), turned(half(of_b, b), self.joint.other_anchor));
-        (self.split, self.dt) = ((entry(split, a), entry(split, b)), dt);
-        self.impulse *= scale;
-        self.motor *= scale;
-    }
-
-    /// The pushes of the impulses of the last substep, or of this one so far.
-    pub fn kept_pushes(&self) -> (Twist, Twist) {
-        self.pushes(self.force(), self.motor)
-    }
-
-    fn direction(&self) -> Vector64 {
-        self.offset.try_normalize().unwrap_or(Vector64::Y)
-    }
-
-    fn pushes(&self, vector: Vector64, moment: f64) -> (Twist, Twist) {
-        let on = |arm: Vector64| Twist { linear: vector, angular: arm.perp_dot(vector) + moment };
-        (on(self.arms.0), on(self.arms.1))
-    }
-
-    fn relative(&self, motion: &[Twist]) -> Vector64 {
-        let (a, b) = self.bodies();
-        entry(motion, a).at(self.middle.0) - entry(motion, b).at(self.middle.1)
-    }
-
-    /// One iteration from the given displacements: pushes to add to the first body and to subtract from the second.
-    pub fn solve(&mut self, displacements: &[Twist]) -> (Twist, Twist) {
-        match self.joint.kind {
-            JointKind::Hinge { motor } => {
-                let added = -self.solve_point(self.relative(displacements));
-                self.impulse += added;
-                let moment = motor.map_or(0.0, |motor| self.drive(motor, displacements));
-                self.pushes(added, moment)
-            }
-            JointKind::Distance { length, compliance, rule } => {
-                let stretch = self.offset.length() - length;
-                let softness = compliance / (self.dt * self.dt);
-                let bias = match rule {
-                    DistanceRule::AtMost => stretch.min(0.0) + if softness > 0.0 { stretch.max(0.0) } else { 0.0 },
-                    DistanceRule::Exact => {
-                        if softness > 0.0 {
-                            stretch
-                        } else {
-                            0.0
-                        }
-                    }
-                };
-                let along = self.direction();
-                let excess = self.relative(displacements).dot(along) + bias + softness * self.impulse.x;
-                let mut total = self.impulse.x - excess / (self.weight(along) + softness);
-                if rule == DistanceRule::AtMost {
-                    total = total.min(0.0);
-                }
-                let added = total - self.impulse.x;
-                self.impulse.x = total;
-                self.pushes(along * added, 0.0)
-            }
-        }
-    }
-
-    fn drive(&mut self, motor: Motor, displacements: &[Twist]) -> f64 {
-        let (a, b) = self.bodies();
-        let turn = entry(displacements, a).angular - entry(displacements, b).angular;
-        let weight = self.split.0.angular + self.split.1.angular;
-        let limit = motor.max_torque * self.dt * self.dt;
-        let wanted = if weight > 0.0 { (motor.speed * self.dt - turn) / weight } else { 0.0 };
-        let total = (self.motor + wanted).clamp(-limit, limit);
-        total - std::mem::replace(&mut self.motor, total)
-    }
-
-    /// The impulse that would move the anchors apart by `apart` (2 x 2 system of the split masses).
-    fn solve_point(&self, apart: Vector64) -> Vector64 {
-        let (a, b) = self.split;
-        let response = |unit: Vector64| {
-            let moved = |arm: Vector64, middle: Vector64| middle.perp() * arm.perp_dot(unit);
-            let turned = moved(self.arms.0, self.middle.0) * a.angular + moved(self.arms.1, self.middle.1) * b.angular;
-            unit * (a.linear + b.linear) + turned
-        };
-        let (x, y) = (response(Vector64::X), response(Vector64::Y));
-        let determinant = x.perp_dot(y);
-        if determinant <= 0.0 {
-            return Vector64::ZERO;
-        }
-        Vector64::new(apart.perp_dot(y), x.perp_dot(apart)) / determinant
-    }
-
-    fn weight(&self, along: Vector64) -> f64 {
-        let (a, b) = self.split;
-        let moment = |arm: Vector64, middle: Vector64| arm.perp_dot(along) * middle.perp_dot(along);
-        let (at_a, at_b) = (moment(self.arms.0, self.middle.0), moment(self.arms.1, self.middle.1));
-        (a.linear + b.linear + at_a * a.angular + at_b * b.angular).max(f64::MIN_POSITIVE)
-    }
-
-    /// Position-only pushes that remove half of the drift. The poses have moved by `displacements`, and move on
-    /// to `motion`.
-    pub fn separate(&mut self, poses: &[Pose], displacements: &[Twist], motion: &[Twist]) -> (Twist, Twist) {
-        let (a, b) = self.bodies();
-        let pose = |id: u32| {
-            let (pose, was, is) = (entry(poses, id), entry(displacements, id), entry(motion, id));
-            let angle = pose.angle + is.angular - was.angular;
-            Pose { position: pose.position + is.linear - was.linear, angle }
-        };
-        self.place(pose(a), pose(b));
-        match self.joint.kind {
-            JointKind::Hinge { .. } => self.pushes(-self.solve_point(self.offset * 0.5), 0.0),
-            JointKind::Distance { length, compliance, rule } => {
-                let stretch = self.offset.length() - length;
-                if compliance > 0.0 || (rule == DistanceRule::AtMost && stretch < 0.0) {
-                    return (Twist::ZERO, Twist::ZERO);
-                }
-                let along = self.direction();
-                self.pushes(along * (-0.5 * stretch / self.weight(along)), 0.0)
-            }
-        }
-    }
-}
-
-impl Linked {
-    /// Whether a motor wants it to turn.
-    pub fn is_driven(&self) -> bool {
-        matches!(self.joint.kind, JointKind::Hinge { motor: Some(motor) } if motor.speed != 0.0 && motor.max_torque > 0.0)
-    }
-
-    /// The impulse on the first body as a vector [kg m].
-    pub fn force(&self) -> Vector64 {
-        match self.joint.kind {
-            JointKind::Hinge { .. } => self.impulse,
-            JointKind::Distance { .. } => self.direction() * self.impulse.x,
-        }
-    }
+    /// Force on the first body at its anchor over the last frame, mean [N].
+    pub force: Vector64,
+    /// Torque on the first body about its anchor over the last frame, mean [N m].
+    pub torque: f64,
+    /// Whether its load has broken it.
+    pub broken: bool,
+    /// Whether it was taken away.
+    pub removed: bool,
 }

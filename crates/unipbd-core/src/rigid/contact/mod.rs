@@ -14,6 +14,7 @@
 //!
 //! a frame ends with [`Contacts::finish_frame`] and [`Bodies::finish_frame`].
 
+mod block;
 mod bounds;
 mod broad;
 mod collide;
@@ -26,6 +27,8 @@ mod frames;
 mod islands;
 mod jacobi;
 mod joint;
+mod joint_set;
+mod linked;
 mod manifold;
 mod narrow_phase;
 mod pair_contacts;
@@ -34,6 +37,7 @@ mod pieces;
 mod push;
 mod reach;
 mod rebound;
+mod rows;
 mod saved;
 mod settings;
 mod solver;
@@ -42,10 +46,10 @@ mod touch;
 mod union_find;
 
 pub use islands::SleepSettings;
-pub use joint::{DistanceRule, Joint, JointKind, Motor};
+pub use joint::{DistanceRule, Joint, JointKind, JointState, Limits, Motor, Strength};
 pub use settings::{ContactSettings, Depenetration};
 
-pub(crate) use joint::Linked;
+pub(crate) use linked::Linked;
 pub(crate) use manifold::{Contact, entry};
 pub(crate) use push::Push;
 pub(crate) use solver::{ContactSolver, Split};
@@ -75,6 +79,8 @@ pub struct Contacts {
     solver: Arc<dyn ContactSolver>,
     narrow_phase: NarrowPhase,
     joints: Vec<Linked>,
+    /// Joints that broke in the last frame.
+    broke: Vec<u32>,
     islands: Islands,
     jacobi: Jacobi,
     split: Vec<InverseMass>,
@@ -84,6 +90,8 @@ pub struct Contacts {
     corrections: Vec<Twist>,
     wall_impulses: Vec<Vector64>,
     wall_forces: Vec<Vector64>,
+    #[serde(skip)]
+    wall_names: Vec<String>,
     /// Whether the next iteration goes through the contacts from the last to the first.
     backward: bool,
     dt: f64,
@@ -120,8 +128,9 @@ impl Contacts {
                 ContactMethod::SplitJacobi => Arc::new(Split),
             },
             settings,
-            narrow_phase: NarrowPhase::new(walls),
+            narrow_phase: NarrowPhase::new(walls, settings.friction_rule),
             joints: Vec::new(),
+            broke: Vec::new(),
             islands: Islands::default(),
             jacobi: Jacobi::default(),
             split: Vec::new(),
@@ -130,6 +139,7 @@ impl Contacts {
             corrections: Vec::new(),
             wall_impulses: vec![Vector64::ZERO; walls.len()],
             wall_forces: vec![Vector64::ZERO; walls.len()],
+            wall_names: walls.iter().map(|wall| wall.name.clone()).collect(),
             backward: false,
             dt: 0.0,
             warm_factor: 1.0,
@@ -149,20 +159,6 @@ impl Contacts {
         self.jacobi.parallelism = parallelism;
     }
 
-    /// Adds a joint and returns its index. Without `collide`, the bodies it links no longer collide with each other.
-    pub fn add_joint(&mut self, joint: Joint, collide: bool) -> usize {
-        self.joints.push(Linked::new(joint));
-        if let Some(other) = joint.other.filter(|_| !collide) {
-            self.narrow_phase.exclude(joint.body, other);
-        }
-        self.joints.len() - 1
-    }
-
-    /// Changes the constraint of a joint, such as the speed of its motor.
-    pub fn set_joint(&mut self, index: usize, kind: JointKind, bodies: &mut Bodies) {
-        self.joints[index].joint.kind = kind;
-        bodies.pushed[self.joints[index].joint.body as usize] = true;
-    }
 
     /// Finds the contacts at the start of a substep and wakes the bodies that are touched.
     pub fn begin_substep(&mut self, bodies: &mut Bodies, dt: f64, gravity: Vector64) {
@@ -204,7 +200,7 @@ impl Contacts {
                 contact.prepare(split);
                 contact.kept_push()
             },
-            |linked, _| linked.kept_pushes(),
+            |linked, _| if linked.is_live() { linked.kept_pushes() } else { Default::default() },
         );
     }
 
@@ -224,7 +220,7 @@ impl Contacts {
                 count(contact.b);
             }
         }
-        for (a, b) in self.joints.iter().map(Linked::bodies) {
+        for (a, b) in self.joints.iter().filter(|linked| linked.is_live()).map(Linked::bodies) {
             count(a);
             count(b);
         }
@@ -270,6 +266,7 @@ impl Contacts {
                 }
             }
         }
+        self.finish_joints(frame_time);
         for (force, impulse) in self.wall_forces.iter_mut().zip(&mut self.wall_impulses) {
             *force = std::mem::take(impulse) / frame_time;
         }
@@ -288,10 +285,44 @@ impl Contacts {
         }
     }
 
+    /// Bodies were added, changed, moved or taken away between two frames.
+    pub(crate) fn bodies_changed(&mut self, bodies: &mut Bodies) {
+        self.islands.resize(bodies.len());
+        self.islands.wake_pushed(bodies);
+        self.narrow_phase.rebuild(bodies);
+    }
+
+    /// Wakes the bodies that touch this one, and those that sleep with it.
+    pub(crate) fn wake_neighbors(&mut self, bodies: &mut Bodies, body: u32) {
+        self.islands.resize(bodies.len());
+        let frozen = self.narrow_phase.frozen().map(|(contact, _)| (contact.a, contact.b));
+        let found = self.narrow_phase.contacts().iter().map(|contact| (contact.a, contact.b));
+        let near: Vec<u32> = frozen
+            .chain(found)
+            .filter(|&(a, b)| b != NONE && (a == body || b == body))
+            .flat_map(|(a, b)| [a, b])
+            .collect();
+        for id in near.into_iter().chain([body]).filter(|&id| bodies.asleep[id as usize]).collect::<Vec<_>>() {
+            self.islands.wake_island(bodies, id as usize);
+        }
+    }
+
+    /// Wakes all bodies.
+    pub(crate) fn wake_all(&mut self, bodies: &mut Bodies) {
+        self.islands.resize(bodies.len());
+        for id in 0..bodies.len() {
+            if bodies.asleep[id] {
+                self.islands.wake_island(bodies, id);
+            }
+        }
+    }
+
     /// Wakes a body with its island.
     pub fn wake(&mut self, bodies: &mut Bodies, body: u32) {
         self.islands.resize(bodies.len());
-        self.islands.wake_island(bodies, body as usize);
+        if bodies.asleep[body as usize] {
+            self.islands.wake_island(bodies, body as usize);
+        }
     }
 
     /// Puts bodies to sleep, those that touch each other as one island.
@@ -305,7 +336,7 @@ impl Contacts {
 
     /// Pairs of bodies that act on each other through contacts or joints.
     pub(crate) fn linked(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
-        self.pressed().chain(self.joints.iter().map(Linked::bodies)).filter(|&(_, b)| b != NONE)
+        self.pressed().chain(self.joints.iter().filter(|linked| linked.is_live()).map(Linked::bodies)).filter(|&(_, b)| b != NONE)
     }
 
     /// The bodies of the contacts that carry a load.
@@ -321,6 +352,12 @@ impl Contacts {
     /// Force of the bodies on each wall over the last frame, mean [N]; in the order of the walls.
     pub fn wall_forces(&self) -> &[Vector64] {
         &self.wall_forces
+    }
+
+    /// Mean force of the bodies over the last frame on the walls of this name [N].
+    pub(crate) fn wall_force(&self, name: &str) -> Vector64 {
+        let named = self.wall_names.iter().zip(&self.wall_forces).filter(|(of, _)| *of == name);
+        named.map(|(_, force)| *force).sum()
     }
 
     /// The contacts of the last substep between bodies that were awake.
@@ -342,11 +379,6 @@ impl Contacts {
         rows.flat_map(move |(contact, cache)| (0..contact.points().len()).map(move |k| read(contact, cache, k)))
     }
 
-    /// Joints with the force on the first body [N] and the torque of the motor [N m] in the last substep.
-    pub fn joint_loads(&self) -> impl Iterator<Item = (Joint, Vector64, f64)> + '_ {
-        let square = self.dt * self.dt;
-        self.joints.iter().map(move |linked| (linked.joint, linked.force() / square, linked.motor / square))
-    }
 }
 
 fn in_turn() -> Arc<dyn ContactSolver> {

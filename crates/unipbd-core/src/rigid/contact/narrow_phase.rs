@@ -14,6 +14,7 @@ use super::reach::Reach;
 use crate::parallel::Parallelism;
 use crate::rigid::Bodies;
 use crate::rigid::Wall;
+use crate::scene::FrictionRule;
 use rayon::prelude::*;
 
 /// Pairs per task, and the minimum number of pairs for parallel tasks.
@@ -24,6 +25,9 @@ const PARALLEL_FROM: usize = 2048;
 #[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct NarrowPhase {
     pieces: Pieces,
+    /// Those of the walls alone.
+    #[serde(skip)]
+    walls: Pieces,
     pairs: Pairs,
     reach: Reach,
     #[serde(skip)]
@@ -43,8 +47,9 @@ pub(super) struct NarrowPhase {
 }
 
 impl NarrowPhase {
-    pub fn new(walls: &[Wall]) -> NarrowPhase {
-        NarrowPhase { pieces: Pieces::of_walls(walls), ..NarrowPhase::default() }
+    pub fn new(walls: &[Wall], rule: FrictionRule) -> NarrowPhase {
+        let walls = Pieces::of_walls(walls, rule);
+        NarrowPhase { pieces: walls.clone(), walls, ..NarrowPhase::default() }
     }
 
     pub fn contacts(&self) -> &[Contact] {
@@ -61,7 +66,8 @@ impl NarrowPhase {
 
     /// The search of a saved state, between the pieces of this one; `None` if the state makes no sense.
     pub fn at_saved(&self, saved: NarrowPhase, bodies: &Bodies) -> Option<NarrowPhase> {
-        let pieces = self.pieces.at_saved(&saved.pieces, bodies)?;
+        // Bodies may have come and gone since.
+        let pieces = self.walls.at_saved(&saved.pieces, bodies)?;
         let mut pairs = self.pairs.at_saved(saved.pairs, &pieces, bodies)?;
         let sound = [&saved.found, &saved.frozen].into_iter().all(|set| set.is_sound(&pairs.all));
         if !sound {
@@ -81,12 +87,44 @@ impl NarrowPhase {
         }
         let (found, frozen, parallelism) = (saved.found, saved.frozen, self.parallelism);
         let reach = saved.reach.at_saved(bodies.len())?;
-        Some(NarrowPhase { pieces, pairs, reach, found, frozen, parallelism, ..NarrowPhase::default() })
+        let walls = self.walls.clone();
+        Some(NarrowPhase { pieces, walls, pairs, reach, found, frozen, parallelism, ..NarrowPhase::default() })
     }
 
-    /// Disables collisions between two bodies.
-    pub fn exclude(&mut self, a: u32, b: u32) {
-        self.pairs.exclude(a, b);
+    /// Disables collisions between these pairs of bodies, and enables all others.
+    pub fn exclude_only(&mut self, pairs: Vec<(u32, u32)>) {
+        if self.pairs.exclude_only(pairs) {
+            self.reach.restart();
+        }
+    }
+
+    /// Bodies were added, changed, moved or taken away between two frames: pieces are made anew, and the contacts of
+    /// pairs that are left keep their impulses.
+    pub fn rebuild(&mut self, bodies: &Bodies) {
+        let old = std::mem::replace(&mut self.pieces, self.walls.clone());
+        self.pieces.append_bodies(bodies);
+        let places = old.places_in(&self.pieces);
+        let kept = self.pairs.rebuild(&places, &self.pieces, bodies);
+        let (found, frozen) = (std::mem::take(&mut self.found), std::mem::take(&mut self.frozen));
+        for (span, index) in self.pairs.spans.iter_mut().zip(0u32..).filter(|(span, _)| span.count > 0) {
+            let (from, to) = match span.frozen {
+                true => (&frozen, &mut self.frozen),
+                false => (&found, &mut self.found),
+            };
+            let start = to.contacts.len() as u32;
+            to.contacts.extend_from_slice(&from.contacts[span.range()]);
+            let surface = self.pairs.all[index as usize].surface;
+            let caches = from.caches[span.range()].iter();
+            to.caches.extend(caches.map(|cache| ContactCache { pair: index, surface, ..cache.clone() }));
+            span.first = start;
+        }
+        debug_assert!(kept == self.pairs.all.len());
+        self.reach.restart();
+    }
+
+    /// Convex pieces of all bodies and walls where they were at the last search.
+    pub fn pieces(&self) -> &Pieces {
+        &self.pieces
     }
 
     /// Begins a frame of this length [s].

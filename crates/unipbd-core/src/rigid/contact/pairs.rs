@@ -79,11 +79,17 @@ pub(super) struct Active {
 }
 
 impl Pairs {
-    /// Disables collisions between two bodies.
-    pub fn exclude(&mut self, a: u32, b: u32) {
-        self.excluded.push((a.min(b), a.max(b)));
-        self.excluded.sort_unstable();
-        self.fat.clear();
+    /// Disables collisions between these pairs of bodies, and enables all others; whether that changes anything.
+    pub fn exclude_only(&mut self, mut pairs: Vec<(u32, u32)>) -> bool {
+        pairs.iter_mut().for_each(|(a, b)| (*a, *b) = (*(a.min(b)), *(a.max(b))));
+        pairs.sort_unstable();
+        pairs.dedup();
+        let changed = pairs != self.excluded;
+        if changed {
+            self.excluded = pairs;
+            self.fat.clear();
+        }
+        changed
     }
 
     /// Pairs of a saved state, made anew between these pieces; `None` if the state makes no sense.
@@ -107,6 +113,22 @@ impl Pairs {
         let listed = |active: &Active| all.get(active.index as usize).is_some_and(|pair| pair.bodies == active.bodies);
         let rising = saved.active.windows(2).all(|two| two[0].index < two[1].index);
         (rising && saved.active.iter().all(listed)).then(|| Pairs { all, excluded: self.excluded.clone(), ..saved })
+    }
+
+    /// Makes the list anew after pieces were, given the new place of each old piece; pairs that are left keep their
+    /// contacts, with the surfaces of now. Returns their number.
+    pub fn rebuild(&mut self, places: &[u32], pieces: &Pieces, bodies: &Bodies) -> usize {
+        let spans = std::mem::take(&mut self.spans);
+        for (pair, span) in std::mem::take(&mut self.all).into_iter().zip(spans) {
+            let key = (places[pair.key.0 as usize], places[pair.key.1 as usize]);
+            if key.0 != NONE && key.1 != NONE && may_touch(pieces, &self.excluded, bodies, key.0, key.1) {
+                self.all.push(Pair::new(pieces, key));
+                self.spans.push(span);
+            }
+        }
+        self.fat.clear();
+        self.list_active(bodies);
+        self.all.len()
     }
 
     /// Half-planes follow all pieces: their indices increase with the number of pieces.
@@ -224,7 +246,7 @@ impl Pair {
                 (&other.surface, other.wall, other.size, radius(round(b), other.radius))
             }
         };
-        let surface = piece.surface.combined(surface);
+        let surface = piece.surface.combined(surface, pieces.rule);
         let rolling = rolling.min(radius(round(a), piece.radius));
         let kind = match plane {
             Some(_) => Kind::OnPlane,

@@ -6,6 +6,7 @@ use super::frames::Frames;
 use crate::math::Vector64;
 use crate::rigid::{Bodies, BodyKind, CollisionFilter, Pose, Surface};
 use crate::rigid::{Boundary, Wall};
+use crate::scene::FrictionRule;
 use crate::shapes::{Core, Shape};
 
 /// The owner of a piece, and the range of its vertices.
@@ -86,11 +87,13 @@ pub(super) struct Pieces {
     exposed: Vec<[f64; 2]>,
     corners: Vec<bool>,
     known_bodies: usize,
+    /// How friction coefficients combine.
+    pub rule: FrictionRule,
 }
 
 impl Pieces {
-    pub fn of_walls(walls: &[Wall]) -> Pieces {
-        let mut pieces = Pieces::default();
+    pub fn of_walls(walls: &[Wall], rule: FrictionRule) -> Pieces {
+        let mut pieces = Pieces { rule, ..Pieces::default() };
         for (wall, index) in walls.iter().zip(0u32..) {
             let (shape, position) = match &wall.boundary {
                 Boundary::HalfPlane { point, normal } => {
@@ -101,7 +104,7 @@ impl Pieces {
                 Boundary::Disc { center, radius } => (Shape::Disc { radius: *radius }, *center),
                 Boundary::Polygon(corners) => (Shape::Polygon(corners.clone()), Vector64::ZERO),
             };
-            let filter = CollisionFilter { layers: u32::MAX, collides_with: u32::MAX };
+            let filter = CollisionFilter { layers: u32::MAX, collides_with: u32::MAX, group: 0 };
             let size = shape.moments().area.sqrt();
             let owner = Piece { size, surface: wall.surface, filter, ..Piece::of(NONE, index) };
             pieces.append(&shape.core(), &owner);
@@ -117,6 +120,9 @@ impl Pieces {
         for id in known..bodies.len() {
             let view = &bodies.views()[id];
             let (size, surface, filter) = (bodies.sizes[id], view.surface, view.filter);
+            if view.sensor {
+                continue;
+            }
             let owner = Piece { size, surface, filter, ..Piece::of(id as u32, NONE) };
             self.append(&bodies.cores[id], &owner);
             self.place_last(&bodies.poses[id]);
@@ -211,6 +217,21 @@ impl Pieces {
             taken.bounds.clone_from(&saved.bounds);
             taken
         })
+    }
+
+    /// Where each piece, and each half-plane behind them, is in other pieces; [`NONE`] for those of bodies that are gone.
+    /// Bodies keep their shape and their order.
+    pub fn places_in(&self, other: &Pieces) -> Vec<u32> {
+        let mut places = Vec::with_capacity(self.count());
+        let mut next = 0usize;
+        for piece in &self.all {
+            let owner = (piece.body, piece.wall);
+            let same = other.all.get(next).is_some_and(|found| (found.body, found.wall) == owner);
+            places.push(if same { next as u32 } else { NONE });
+            next += usize::from(same);
+        }
+        places.extend((0..self.half_planes.len()).map(|k| (other.all.len() + k) as u32));
+        places
     }
 
     /// Number of pieces and half-planes.

@@ -49,6 +49,11 @@ impl Reach {
         (self.frame, self.elapsed, self.begun) = (frame, 0.0, false);
     }
 
+    /// Searches all bodies in the next substep.
+    pub fn restart(&mut self) {
+        self.begun = false;
+    }
+
     /// The last searches of a saved state, for so many bodies; `None` if they make no sense.
     pub fn at_saved(self, bodies: usize) -> Option<Reach> {
         let finite = |of: &Reference| {

@@ -1,7 +1,7 @@
 //! Settings of the contact solver.
 
 use super::SleepSettings;
-use crate::scene::{ContactDescription, ContactMethod};
+use crate::scene::{ContactDescription, ContactMethod, FrictionRule};
 
 /// Settings of the contact solver.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -17,6 +17,8 @@ pub struct ContactSettings {
     pub depenetration: Depenetration,
     /// Velocity iterations of the restitution pass.
     pub restitution_iterations: u32,
+    /// How friction coefficients combine.
+    pub friction_rule: FrictionRule,
     /// Sleep thresholds of bodies; `None` disables sleep.
     pub sleep: Option<SleepSettings>,
 }
@@ -30,6 +32,7 @@ impl Default for ContactSettings {
             iterations,
             depenetration: Depenetration::default(),
             restitution_iterations: 6,
+            friction_rule: FrictionRule::default(),
             sleep: Some(SleepSettings::default()),
         }
     }

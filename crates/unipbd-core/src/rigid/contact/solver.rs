@@ -1,6 +1,6 @@
 //! Interface of the contact solver: the exchangeable computation of contact pushes.
 
-use super::joint::Linked;
+use super::linked::Linked;
 use super::manifold::Contact;
 use super::sweep::Sweep;
 use crate::math::Vector64;

@@ -4,7 +4,7 @@ use super::bounds::NONE;
 use super::contact_cache::ContactCache;
 use super::contact_set::Rows;
 use super::jacobi::Jacobi;
-use super::joint::Linked;
+use super::linked::Linked;
 use super::manifold::{Contact, entry};
 use super::push::Push;
 use crate::rigid::{InverseMass, Twist};

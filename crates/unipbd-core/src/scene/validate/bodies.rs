@@ -84,6 +84,13 @@ fn check_shape(checker: &mut Checker, path: KeyPath, body: &BodyDescription) -> 
 }
 
 fn check_mass(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {
+    let hint = "a rate in 1/s; 0 keeps the velocity";
+    checker.range(path.then("linear_damping"), body.linear_damping, Allowed::NotNegative, hint);
+    checker.range(path.then("angular_damping"), body.angular_damping, Allowed::NotNegative, hint);
+    if body.sensor && body.kind == BodyKind::Dynamic {
+        let hint = "make it \"static\" or \"kinematic\": a sensor has no weight and stands on nothing";
+        checker.problem(path.then("sensor"), "a dynamic body is no sensor", hint);
+    }
     checker.range(path.then("density"), body.density, Allowed::Positive, "mass per area in kg/m^2; 1000 is water");
     checker.range(path.then("mass"), body.mass, Allowed::Positive, "in kg; left out, it follows from the density");
 }
@@ -105,14 +112,14 @@ fn check_surface(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) 
 
 /// What holds for bodies that are particles, and for them alone.
 fn check_solver(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {
-    let hint = "the part of its deformation that it takes back in a 60th of a second: 1 is rigid";
-    checker.range(path.then("stiffness"), body.stiffness, Allowed::Between(0.0, 1.0), hint);
+    let hint = "displacement of its samples over a force on all of them, in m/N: 0 is rigid";
+    checker.range(path.then("compliance"), body.compliance, Allowed::NotNegative, hint);
     let hint = "the part of its wobble that it loses in a 60th of a second: 0 wobbles on, 1 creeps";
     checker.range(path.then("damping"), body.damping, Allowed::Between(0.0, 1.0), hint);
     if body.solver == BodySolver::Pose {
-        if body.stiffness != 1.0 {
+        if body.compliance != 0.0 {
             let hint = "add solver = \"shape_matching\", or leave it out";
-            checker.problem(path.then("stiffness"), "a rigid pose does not deform", hint);
+            checker.problem(path.then("compliance"), "a rigid pose does not deform", hint);
         }
         return;
     }
@@ -127,9 +134,14 @@ fn check_solver(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {
     refuse("restitution", body.restitution != 0.0);
     refuse("rolling_friction", body.rolling_friction != 0.0);
     refuse("gravity_factor", body.gravity_factor != 1.0);
+    refuse("linear_damping", body.linear_damping != 0.0);
+    refuse("angular_damping", body.angular_damping != 0.0);
+    refuse("collision_group", body.collision_group != 0);
+    refuse("sensor", body.sensor);
     let scene = checker.scene;
     let joined = || scene.joint.iter().any(|joint| joint.body == body.name || joint.other.as_ref() == Some(&body.name));
-    let tied = || scene.rope.iter().any(|rope| rope.body.as_ref() == Some(&body.name));
+    let named = |end: &Option<String>| end.as_ref() == Some(&body.name);
+    let tied = || scene.rope.iter().any(|rope| named(&rope.body) || named(&rope.from_body));
     if !body.name.is_empty() && (joined() || tied()) {
         let hint = "join bodies with solver = \"pose\"";
         checker.problem(path.then("solver"), "joints and ropes do not hold a body that is particles", hint);

@@ -54,17 +54,63 @@ pub(super) fn check_body(checker: &mut Checker, path: KeyPath, name: &str, names
 
 fn check_values(checker: &mut Checker, path: &KeyPath, joint: &JointDescription) {
     checker.range(path.then("compliance"), joint.compliance, Allowed::NotNegative, "in m/N; 0 is rigid");
+    checker.range(path.then("damping"), joint.damping, Allowed::NotNegative, "in N s/m; beside a compliance");
     checker.range(path.then("motor_torque"), joint.motor_torque, Allowed::Positive, "in N m; left out, no limit");
+    checker.range(path.then("motor_force"), joint.motor_force, Allowed::Positive, "in N; left out, no limit");
     checker.range(path.then("length"), joint.length, Allowed::Positive, "in metres; left out, as the scene starts");
-    if joint.kind == JointRule::Hinge {
-        let apart = joint.other_at.is_some_and(|other| other != joint.at);
-        let given = [("length", joint.length.is_some()), ("other_at", apart), ("compliance", joint.compliance != 0.0)];
-        for (key, _) in given.into_iter().filter(|(_, given)| *given) {
-            let hint = "leave it out, or make the joint a \"rod\" or a \"rope\"";
-            checker.problem(path.then(key), format!("a hinge has no `{key}`"), hint);
+    checker.range(path.then("ratio"), joint.ratio, Allowed::Positive, "1 for a single rope");
+    checker.range(path.then("break_force"), joint.break_force, Allowed::Positive, "in N; left out, it never breaks");
+    checker.range(path.then("break_torque"), joint.break_torque, Allowed::Positive, "in N m; left out, it never breaks");
+    for (key, limits) in [("limits_deg", joint.limits_deg), ("limits", joint.limits)] {
+        if limits.is_some_and(|[least, most]| least > most) {
+            checker.problem(path.then(key), "must be the smaller value, then the larger", "swap the two");
         }
-    } else if joint.motor_speed_deg.is_some() {
-        let hint = "make the joint a \"hinge\", or leave it out";
-        checker.problem(path.then("motor_speed_deg"), "only a hinge has a motor", hint);
+    }
+    check_kind(checker, path, joint);
+}
+
+/// Keys that only some kinds of joints have: kinds, a word for them, keys with whether they are given.
+fn check_kind(checker: &mut Checker, path: &KeyPath, joint: &JointDescription) {
+    use JointRule::{Hinge, Pulley, Rod, Rope, Slider, Weld};
+    let apart = joint.other_at.is_some_and(|other| other != joint.at);
+    let owners: [(&[JointRule], &str, &str, bool); 12] = [
+        (&[Rod, Rope, Pulley], "rod, rope or pulley", "length", joint.length.is_some()),
+        (&[Rod, Rope], "rod or rope", "compliance", joint.compliance != 0.0),
+        (&[Rod, Rope], "rod or rope", "damping", joint.damping != 0.0),
+        (&[Rod, Rope, Pulley, Slider], "rod, rope, slider or pulley", "other_at", apart),
+        (&[Hinge], "hinge", "limits_deg", joint.limits_deg.is_some()),
+        (&[Hinge], "hinge", "motor_speed_deg", joint.motor_speed_deg.is_some()),
+        (&[Slider], "slider", "axis", joint.axis.is_some()),
+        (&[Slider], "slider", "limits", joint.limits.is_some()),
+        (&[Slider], "slider", "motor_speed", joint.motor_speed.is_some()),
+        (&[Pulley], "pulley", "wheel", joint.wheel.is_some()),
+        (&[Pulley], "pulley", "other_wheel", joint.other_wheel.is_some()),
+        (&[Pulley], "pulley", "ratio", joint.ratio != 1.0),
+    ];
+    for (kinds, names, key, given) in owners {
+        if given && !kinds.contains(&joint.kind) {
+            let message = format!("only a {names} has `{key}`");
+            checker.problem(path.then(key), message, format!("leave it out, or make the joint a {names}"));
+        }
+    }
+    if joint.kind == Weld && joint.compliance != 0.0 {
+        return;
+    }
+    if joint.damping != 0.0 && joint.compliance == 0.0 && matches!(joint.kind, Rod | Rope) {
+        let hint = "give a compliance [m/N]: a damper acts beside a spring";
+        checker.problem(path.then("damping"), "has no effect on a rigid joint", hint);
+    }
+    match joint.kind {
+        Slider if joint.axis.is_none() => {
+            checker.problem(path.clone(), "a slider needs its `axis`", "such as axis = [1.0, 0.0]");
+        }
+        Slider => checker.direction(path.then("axis"), joint.axis.unwrap_or([1.0, 0.0]), "such as [1.0, 0.0]"),
+        Pulley if joint.wheel.is_none() => {
+            checker.problem(path.clone(), "a pulley needs its `wheel`", "a place in the world, above the bodies");
+        }
+        Pulley if joint.other.is_none() => {
+            checker.problem(path.clone(), "a pulley joins two bodies", "name the second with `other`");
+        }
+        _ => {}
     }
 }

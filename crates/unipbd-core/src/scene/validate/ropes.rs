@@ -13,6 +13,13 @@ pub(super) fn check(checker: &mut Checker) {
         if let Some(body) = &rope.body {
             check_body(checker, path.then("body"), body, &names);
         }
+        if let Some(body) = &rope.from_body {
+            check_body(checker, path.then("from_body"), body, &names);
+            if rope.body.as_ref() == Some(body) {
+                let hint = "name another body, or leave one of `from_body` and `body` out";
+                checker.problem(path.then("from_body"), "ties a body to itself", hint);
+            }
+        }
         let distance = (rope.to[0] - rope.from[0]).hypot(rope.to[1] - rope.from[1]);
         let length = rope.full_length();
         let hint = "make it longer, or move the ends together";

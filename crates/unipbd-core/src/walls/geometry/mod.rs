@@ -3,7 +3,7 @@
 use super::Coverage;
 use crate::math::{Real, Vector, Vector64, real, vector};
 use crate::observe::WallOutline;
-use crate::scene::{HalfPlane, Obstacle, Scene, Side, Slip, Tank};
+use crate::scene::{HalfPlane, Obstacle, Scene, Side, Slip, Tank, body_friction};
 
 mod behind;
 mod rectangle;
@@ -36,6 +36,8 @@ struct Plane {
     point: Vector,
     normal: Vector,
     friction: Real,
+    /// The same for bodies that are particles.
+    body_friction: Real,
     slip: Slip,
     velocity: Vector,
     measured: Option<u16>,
@@ -56,6 +58,8 @@ struct Rectangle {
     min: Vector,
     max: Vector,
     friction: Real,
+    /// The same for bodies that are particles.
+    body_friction: Real,
     slip: Slip,
     measured: Option<u16>,
 }
@@ -121,9 +125,12 @@ impl Walls {
         planes.chain(self.rectangles.iter().filter_map(move |rectangle| rectangle.hit_on_path(start, x)))
     }
 
-    /// The walls that a disc about `x` overlaps: the overlap, and the direction out.
+    /// The walls that a disc about `x`, a sample of a body, overlaps: the overlap, and the direction out.
     pub fn touches(&self, x: Vector, radius: Real) -> impl Iterator<Item = Hit> + '_ {
-        let planes = self.planes.iter().filter_map(move |plane| plane.hit(x - plane.normal * radius));
+        let planes = self.planes.iter().filter_map(move |plane| {
+            let hit = plane.hit(x - plane.normal * radius)?;
+            Some(Hit { friction: plane.body_friction, ..hit })
+        });
         planes.chain(self.rectangles.iter().filter_map(move |rectangle| rectangle.touch(x, radius)))
     }
 
@@ -220,7 +227,8 @@ impl Walls {
         self.planes.push(Plane {
             point: vector(point),
             normal: vector(normal),
-            friction: real(wall.friction),
+            friction: real(wall.friction.unwrap_or(0.0)),
+            body_friction: real(body_friction(wall.friction)),
             slip: wall.slip,
             velocity: vector(along),
             measured,
@@ -247,7 +255,8 @@ impl Walls {
                 self.planes.push(Plane {
                     point: vector(point),
                     normal: vector(normal),
-                    friction: real(tank.friction),
+                    friction: real(tank.friction.unwrap_or(0.0)),
+            body_friction: real(body_friction(tank.friction)),
                     slip: tank.slip,
                     velocity: Vector::ZERO,
                     measured: numbers[side as usize],
@@ -273,7 +282,8 @@ impl Walls {
             measured,
             min: vector(min),
             max: vector(max),
-            friction: real(obstacle.friction),
+            friction: real(obstacle.friction.unwrap_or(0.0)),
+            body_friction: real(body_friction(obstacle.friction)),
             slip: obstacle.slip,
         });
         let mut points = ring(min, max).to_vec();

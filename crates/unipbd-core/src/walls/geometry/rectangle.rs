@@ -15,17 +15,17 @@ impl Rectangle {
         Some(Hit { normal, depth, friction: self.friction, measured: self.measured })
     }
 
-    /// A disc about `x` that reaches in.
+    /// A disc about `x`, a sample of a body, that reaches in.
     pub(super) fn touch(&self, x: Vector, radius: Real) -> Option<Hit> {
         let apart = x - x.clamp(self.min, self.max);
         let distance = apart.length();
         if distance == 0.0 {
-            return self.hit(x).map(|hit| Hit { depth: hit.depth + radius, ..hit });
+            return self.hit(x).map(|hit| Hit { depth: hit.depth + radius, friction: self.body_friction, ..hit });
         }
         let hit = Hit {
             normal: apart / distance,
             depth: radius - distance,
-            friction: self.friction,
+            friction: self.body_friction,
             measured: self.measured,
         };
         (distance < radius).then_some(hit)
