@@ -10,7 +10,7 @@ use unipbd_cli::snapshot::{Setting, Snapshot};
 use unipbd_core::math::Vector64;
 use unipbd_core::observe::{Material, WallOutline};
 use unipbd_core::phase::Phase;
-use unipbd_core::rigid::{Body, BodyKind, CollisionFilter, Surface};
+use unipbd_core::rigid::{Body, BodyKind};
 
 const WATER: Rgb = [40, 120, 220];
 const OIL: Rgb = [220, 150, 40];
@@ -193,20 +193,10 @@ fn the_mark_on_a_disc_turns_with_it() {
         position: Vector64::new(0.5, 0.5),
         angle,
         velocity: Vector64::ZERO,
-        angular_velocity: 0.0,
         mass: 1.0,
         inertia: 1.0,
-        outline: vec![],
         radius: 0.3,
-        samples: vec![],
-        sample_area: 0.0,
-        surface: Surface::default(),
-        filter: CollisionFilter::default(),
-        asleep: false,
-        fluid_force: Vector64::ZERO,
-        fluid_torque: 0.0,
-        contact_force: Vector64::ZERO,
-        contact_torque: 0.0,
+        ..Body::default()
     };
     let picture = |angle| draw(&setting(), options(), &Snapshot { bodies: vec![disc(angle)], ..Snapshot::default() });
     let [east, north] = [picture(0.0), picture(std::f64::consts::FRAC_PI_2)];

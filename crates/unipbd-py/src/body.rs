@@ -29,6 +29,11 @@ pub fn shape<'py>(py: Python<'py>, body: &Body) -> PyResult<Bound<'py, PyDict>> 
     dict.set_item("kind", kind(body.kind))?;
     dict.set_item("mass", body.mass)?;
     dict.set_item("inertia", body.inertia)?;
+    dict.set_item("friction", body.surface.static_friction)?;
+    dict.set_item("restitution", body.surface.restitution)?;
+    dict.set_item("gravity_factor", body.gravity_factor)?;
+    dict.set_item("sensor", body.sensor)?;
+    dict.set_item("user_data", body.user_data)?;
     dict.set_item("radius", body.radius)?;
     dict.set_item("outline", points(py, &body.outline)?)?;
     dict.set_item("samples", points(py, &body.samples)?)?;

@@ -15,12 +15,14 @@ mod order;
 mod particles;
 mod picture;
 mod pool;
+mod query;
 mod recording;
 mod scene;
 mod solver;
 mod state;
 mod step;
 mod world;
+mod world_edit;
 
 use pyo3::prelude::*;
 
@@ -43,6 +45,18 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(scene::renamed_key_hint, module)?)?;
     module.add_function(wrap_pyfunction!(scene::default_scene, module)?)?;
     module.add_function(wrap_pyfunction!(scene::estimate_scene, module)?)?;
+    module.add_function(wrap_pyfunction!(query::body_roster, module)?)?;
+    module.add_function(wrap_pyfunction!(query::body_poses, module)?)?;
+    module.add_function(wrap_pyfunction!(query::body_velocities, module)?)?;
+    module.add_function(wrap_pyfunction!(query::wake, module)?)?;
+    module.add_function(wrap_pyfunction!(query::joints, module)?)?;
+    module.add_function(wrap_pyfunction!(query::contacts, module)?)?;
+    module.add_function(wrap_pyfunction!(query::watch_contacts, module)?)?;
+    module.add_function(wrap_pyfunction!(query::contact_pairs, module)?)?;
+    module.add_function(wrap_pyfunction!(query::take_contact_events, module)?)?;
+    module.add_function(wrap_pyfunction!(query::ray_cast, module)?)?;
+    module.add_function(wrap_pyfunction!(query::bodies_in, module)?)?;
+    module.add_function(wrap_pyfunction!(query::nearest, module)?)?;
     module.add_function(wrap_pyfunction!(command::run_command, module)?)?;
     module.add_function(wrap_pyfunction!(command::thread_count, module)?)?;
     Ok(())

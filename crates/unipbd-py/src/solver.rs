@@ -17,7 +17,7 @@ use crate::group::{Callable, Failure, PythonGroup};
 use crate::picture::Look;
 use crate::state::State;
 use crate::world::{World, severity};
-use crate::{arrays, body, diagnostics, edit, errors, picture, scene};
+use crate::{arrays, body, diagnostics, edit, errors, picture, scene, world_edit};
 
 /// A simulation. One thread at a time uses it.
 #[pyclass(frozen, module = "unipbd._native")]
@@ -122,9 +122,11 @@ impl Solver {
         removals: Vec<u32>,
         additions: Vec<Addition<'_>>,
         bodies: Vec<(u32, [f64; 2], f64)>,
+        changed: Vec<Bound<'_, PyDict>>,
     ) -> PyResult<(u32, u32)> {
         let mut world = self.lock(py)?;
         let edit = edit::edit(py, changes, removals, additions, bodies)?;
+        let edit = world_edit::with_changes(py, edit, changed)?;
         world.order = None;
         let solver = &mut world.running.solver;
         let added = py.detach(|| solver.apply(&edit)).map_err(|error| errors::edit(py, &error))?;
@@ -310,8 +312,10 @@ impl Solver {
         world.running.solver.wall_outlines().iter().map(line).collect()
     }
 
-    fn body_names(&self, py: Python<'_>) -> PyResult<Vec<String>> {
-        Ok(self.lock(py)?.running.solver.bodies().iter().map(|body| body.name.clone()).collect())
+    #[getter]
+    fn gravity(&self, py: Python<'_>) -> PyResult<(f64, f64)> {
+        let gravity = self.lock(py)?.running.solver.gravity();
+        Ok((gravity.x, gravity.y))
     }
 
     fn body_motion<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyDict>> {

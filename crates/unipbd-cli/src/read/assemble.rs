@@ -173,11 +173,16 @@ fn body(shape: &BodyShape, state: BodyState) -> Result<Body, String> {
             restitution: shape.restitution,
             speed: 0.0,
         },
-        filter: CollisionFilter { layers: shape.layers, collides_with: shape.collides_with },
+        filter: CollisionFilter { layers: shape.layers, collides_with: shape.collides_with, group: 0 },
+        sensor: shape.sensor,
+        gravity_factor: shape.gravity_factor,
+        // What is gone has left its shape.
+        removed: shape.radius == 0.0 && shape.outline_x.is_empty(),
         asleep: state.asleep,
         fluid_force: Vector64::new(state.fluid_force_x, state.fluid_force_y),
         fluid_torque: state.fluid_torque,
         contact_force: Vector64::new(state.contact_force_x, state.contact_force_y),
         contact_torque: state.contact_torque,
+        ..Body::default()
     })
 }

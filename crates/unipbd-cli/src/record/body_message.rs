@@ -53,6 +53,8 @@ fn body_shape(id: u32, body: &Body) -> BodyShape {
         restitution: body.surface.restitution,
         layers: body.filter.layers,
         collides_with: body.filter.collides_with,
+        sensor: body.sensor,
+        gravity_factor: body.gravity_factor,
     }
 }
 

@@ -271,6 +271,7 @@ fn same_shapes(described: &[Body], bodies: &[Body]) -> bool {
             && a.sample_area == b.sample_area
             && a.surface == b.surface
             && a.filter == b.filter
+            && a.gravity_factor == b.gravity_factor
     };
     described.len() == bodies.len() && described.iter().zip(bodies).all(same)
 }

@@ -188,6 +188,12 @@ messages! {
         /// Collision layers it collides with.
         #[prost(tag = "16", uint32)]
         collides_with: u32,
+        /// Whether it reports what it touches and pushes nothing.
+        #[prost(tag = "17", bool)]
+        sensor: bool,
+        /// Factor on gravity.
+        #[prost(tag = "18", double)]
+        gravity_factor: f64,
     }
 }
 

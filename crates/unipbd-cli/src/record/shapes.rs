@@ -30,9 +30,11 @@ pub(crate) fn scene_update(time: u64, walls: &[WallOutline], bodies: &[Body], pr
         id: body_frame(id as u32),
     };
     let walls = walls.iter().enumerate().map(|(number, wall)| wall_entity(time, number, wall));
-    let drawn = bodies.iter().enumerate().map(|(id, body)| body_entity(time, id as u32, body));
+    let there = bodies.iter().enumerate().filter(|(_, body)| !body.removed);
+    let drawn = there.map(|(id, body)| body_entity(time, id as u32, body));
+    let gone = bodies.iter().enumerate().filter(|(_, body)| body.removed).map(|(id, _)| id);
     SceneUpdate {
-        deletions: (bodies.len()..previous_bodies).map(deletion).collect(),
+        deletions: (bodies.len()..previous_bodies).chain(gone).map(deletion).collect(),
         entities: walls.chain(drawn).collect(),
     }
 }

@@ -84,7 +84,7 @@ pub(super) fn join_ropes(scene: &Scene, ends: &[[u32; 2]], rigid: &mut RigidBodi
 }
 
 /// Walls in the order of the description: half-planes, closed sides of tanks, obstacles.
-fn walls(scene: &Scene) -> Vec<Wall> {
+pub(super) fn walls(scene: &Scene) -> Vec<Wall> {
     let mut walls = Vec::new();
     for wall in &scene.half_plane {
         let (normal, velocity) = (Vector64::from(wall.normal), Vector64::from(wall.velocity));

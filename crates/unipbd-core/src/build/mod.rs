@@ -125,6 +125,7 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         pressure_scale,
         gravity: vector(scene.gravity.into()),
         exact_gravity: scene.gravity.into(),
+        solid_walls: bodies::walls(scene),
         scene_bodies: rigid.as_ref().map_or(0, |rigid| rigid.views().len()),
         scene_mark: rigid.as_ref().map_or(0, RigidBodies::mark),
         no_bodies: RigidBodies::new(Bodies::new(scene.spacing), bodies::contacts(scene), None, scene.spacing),
@@ -163,7 +164,6 @@ fn groups(
         groups.push(Box::new(ShapeMatching::new(
             rigid.members(),
             scene.spacing,
-            scene.solver.iterations,
             scene.contacts.friction_rule,
         )));
     }

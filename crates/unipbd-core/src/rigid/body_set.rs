@@ -35,6 +35,9 @@ pub struct Bodies {
     pub(super) spacing: f64,
     pub(crate) poses: Vec<Pose>,
     pub(crate) velocities: Vec<Twist>,
+    /// Poses at the start of the frame; not part of a state.
+    #[serde(skip)]
+    pub(super) previous: Vec<Pose>,
     /// Displacement u over the running substep.
     pub(crate) displacements: Vec<Twist>,
     /// Inverse mass of each body when awake.

@@ -153,6 +153,9 @@ impl Bodies {
     pub(crate) fn place(&mut self, id: u32, pose: Pose, time: f64) {
         let k = id as usize;
         self.poses[k] = pose;
+        if let Some(previous) = self.previous.get_mut(k) {
+            *previous = pose;
+        }
         self.pushed[k] = self.is_dynamic(k);
         let script = &self.scripts[k];
         let origin = Pose { position: pose.apply(script.origin), angle: pose.angle };
@@ -160,6 +163,21 @@ impl Bodies {
         let start = Pose { position: origin.position - moved.linear, angle: origin.angle - moved.angular };
         (self.specs[k].pose, self.scripts[k].start) = (start, start);
         self.refresh_view(k);
+    }
+
+    /// Begins a frame.
+    pub(crate) fn begin_frame(&mut self) {
+        self.previous.clone_from(&self.poses);
+    }
+
+    /// Poses between the start of the last frame (0) and its end (1).
+    pub(crate) fn interpolated(&self, part: f64) -> Vec<Pose> {
+        let between = |(k, now): (usize, &Pose)| {
+            let was = self.previous.get(k).unwrap_or(now);
+            let (way, turn) = (now.position - was.position, now.angle - was.angle);
+            Pose { position: was.position + way * part, angle: was.angle + turn * part }
+        };
+        self.poses.iter().enumerate().map(between).collect()
     }
 
     /// Lets the script of a new body begin now, where the body was put. `time` is now [s].

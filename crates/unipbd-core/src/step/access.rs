@@ -69,6 +69,11 @@ impl Solver {
         self.world.parts.frame_time
     }
 
+    /// Gravity [m/s^2].
+    pub fn gravity(&self) -> crate::math::Vector64 {
+        self.world.parts.exact_gravity
+    }
+
     /// Rest distance of particles [m].
     pub fn spacing(&self) -> f64 {
         self.world.parts.spacing

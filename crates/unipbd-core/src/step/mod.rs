@@ -1,11 +1,13 @@
 //! The solver loop. `pipeline.rs` is the entry point for readers: the stages of a substep and their order.
 
 mod access;
+mod breaks;
 mod density_watch;
 mod diagnose;
 mod error;
 mod integrate;
 mod pipeline;
+mod query;
 mod settle;
 mod sleep;
 mod solver;
@@ -20,6 +22,7 @@ mod world;
 pub use error::SolverError;
 pub use integrate::BodyForce;
 pub use pipeline::Stage;
+pub use query::{NearestSolid, Query, RayHit, Solid};
 pub use solver::{FrameReport, Solver};
 pub(crate) use stages::ABSURD_SPEED;
 pub use substeps::{Choice, Demand, SubstepRule};

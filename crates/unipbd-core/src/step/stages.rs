@@ -137,6 +137,7 @@ impl World {
         let Some(rigid) = &mut self.parts.rigid else { return };
         rigid.follow_particles(&self.parts.particles, &self.rows);
         rigid.finish_frame(self.parts.frame_time);
+        self.report_broken_joints();
     }
 
     /// Makes the neighbour list valid for these positions.

@@ -79,6 +79,16 @@ impl<'a> SubstepView<'a> {
         self.all_bodies_mut().accelerate(body, force, torque, dt);
     }
 
+    /// Applies a force [N] at a point of the world [m] to a body in this substep. Only a dynamic body is moved.
+    ///
+    /// # Panics
+    /// If there is no such body, or force or point are not finite.
+    pub fn push_body_at(&mut self, body: u32, force: Vector64, point: Vector64) {
+        assert!(point.is_finite(), "points are finite");
+        let arm = point - self.body_pose(body).position;
+        self.push_body(body, force, arm.perp_dot(force));
+    }
+
     /// Sets the velocity of a body: this moves a kinematic body. It keeps this velocity until another one is set.
     ///
     /// # Panics

@@ -19,6 +19,7 @@ use crate::parallel::Parallelism;
 use crate::phase::MaterialIndex;
 use crate::particles::Particles;
 use crate::pressure_grid::PressureGrid;
+use crate::rigid::Wall;
 use crate::rows::RowIndex;
 use crate::sleep::LiquidSleep;
 use crate::sources::{EmitterSystem, RemovalRules};
@@ -53,6 +54,8 @@ pub(crate) struct Parts {
     pub gravity: Vector,
     /// The same in double precision [m/s^2].
     pub exact_gravity: Vector64,
+    /// Walls as solids, in the order in which contacts number them.
+    pub solid_walls: Vec<Wall>,
     /// Number of bodies in the scene, and a mark of them and their joints.
     pub scene_bodies: usize,
     pub scene_mark: u64,
@@ -257,6 +260,7 @@ impl World {
         self.removed.clear();
         if self.clock.done == 0 {
             (self.iterated, self.stepped) = (0, 0);
+            self.parts.rigid.iter_mut().for_each(|rigid| rigid.bodies.begin_frame());
             self.run_all(|plan| &plan.begin)?;
             if !self.sleeps() {
                 let before = self.clock.dt;

@@ -2,11 +2,14 @@
 
 mod answers;
 mod common;
+mod constraints;
 mod contact_options;
+mod edits;
 mod friction;
 mod impacts;
 mod joints;
 mod piles;
+mod queries;
 mod shapes;
 mod sleep;
 mod support;

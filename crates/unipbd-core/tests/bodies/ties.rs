@@ -124,11 +124,13 @@ fn a_soft_body_has_the_same_shape_at_every_number_of_substeps() {
         })
         .sum::<f64>()
     };
-    for compliance in [0.0, 4e-7, 2e-6] {
+    let mut worst = 0.0f64;
+    for compliance in [0.0, 3e-8, 1e-7, 2e-7, 4e-7, 1e-6] {
         let heights: Vec<f64> = [2, 4, 8, 16, 32].map(|substeps| height(substeps, compliance)).into();
         println!("compliance {compliance:e} m/N: mean height {heights:.4?} m at 2 to 32 substeps");
         let (low, high) = heights.iter().fold((f64::MAX, 0.0f64), |(l, h), &y| (l.min(y), h.max(y)));
-        assert!(high - low < 0.02 * 0.6, "the same shape");
+        worst = worst.max((high - low) / 0.6);
     }
-    assert!(height(8, 2e-6) < height(8, 4e-7) && height(8, 4e-7) < height(8, 0.0), "softer is lower");
+    assert!(worst < 0.02, "the same shape");
+    assert!(height(8, 1e-6) < height(8, 4e-7) && height(8, 4e-7) < height(8, 0.0), "softer is lower");
 }

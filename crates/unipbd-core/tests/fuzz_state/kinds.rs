@@ -48,6 +48,7 @@ fn tied() -> Scene {
             link: Link::default(),
             tethers: Tethers::default(),
             body: Some("ball".into()),
+            from_body: None,
         });
     })
 }

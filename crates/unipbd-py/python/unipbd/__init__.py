@@ -44,6 +44,7 @@ from ._scene import Scene
 from ._simulation import Simulation
 from ._state import State
 from ._substep import Projection, Substep, SubstepBody
+from ._world import Contact, ContactEvent, ContactPair, Joint, Nearest, RayHit
 from ._tables import Table, Tables
 
 __all__ = [
@@ -57,14 +58,20 @@ __all__ = [
     "BodyEdit",
     "BusyError",
     "Column",
+    "Contact",
+    "ContactEvent",
+    "ContactPair",
     "Edit",
     "EditError",
     "Frame",
+    "Joint",
     "Log",
     "LogFrame",
     "Material",
+    "Nearest",
     "Phase",
     "Projection",
+    "RayHit",
     "Recording",
     "RecordingError",
     "Scene",

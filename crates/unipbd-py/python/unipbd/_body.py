@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, cast
 
+from . import _native
 from ._arrays import Doubles
 
 if TYPE_CHECKING:
-    from ._observe import Observable
+    from ._world import World
 
 
 class Body:
@@ -17,7 +18,7 @@ class Body:
     substeps of a frame `Substep.bodies`.
     """
 
-    def __init__(self, simulation: Observable, index: int) -> None:
+    def __init__(self, simulation: World, index: int) -> None:
         self._simulation = simulation
         self._index = index
 
@@ -106,6 +107,35 @@ class Body:
     def asleep(self) -> bool:
         """Whether it is held still until something wakes it."""
         return bool(self._motion("asleep"))
+
+    @property
+    def friction(self) -> float:
+        """Coulomb friction coefficient."""
+        return float(self._shape("friction"))
+
+    @property
+    def restitution(self) -> float:
+        """Rebound speed over impact speed."""
+        return float(self._shape("restitution"))
+
+    @property
+    def gravity_factor(self) -> float:
+        """Factor on gravity."""
+        return float(self._shape("gravity_factor"))
+
+    @property
+    def sensor(self) -> bool:
+        """Whether it reports what it touches and pushes nothing."""
+        return bool(self._shape("sensor"))
+
+    @property
+    def user_data(self) -> int:
+        """A number of your own, from ``user_data`` of the scene or `Edit`."""
+        return int(self._shape("user_data"))
+
+    def wake(self) -> None:
+        """Wakes it, with the bodies that it sleeps with and the liquid around them."""
+        _native.wake(self._simulation._native, self._index)
 
     def __repr__(self) -> str:
         x, y = self.position

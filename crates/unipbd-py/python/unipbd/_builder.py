@@ -114,6 +114,6 @@ class Builder:
     def add_joint(self, kind: str, body: str, at: tuple[float, float], **values: Any) -> Table:
         """Links two bodies, or a body and the world, at a point [m].
 
-        `kind` is ``"hinge"``, ``"rod"`` or ``"rope"``; ``other`` names the second body.
+        `kind` is ``"hinge"``, ``"rod"``, ``"rope"``, ``"weld"``, ``"slider"`` or ``"pulley"``; ``other`` names the second body.
         """
         return self.add("joint", kind=kind, body=body, at=at, **values)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import numpy.typing as npt
 
-from ._arrays import Doubles, Ids, fixed, numbers, pairs, points
+from ._arrays import Doubles, Ids, fixed, numbers, pair, pairs, plain, points
 from ._body_edit import BodyEdit
 from ._errors import EditError
 from ._phase import Phase
@@ -80,11 +80,13 @@ class Column:
 
 
 class Edit:
-    """Changes of particles, made together when the `with` block ends. See `Simulation.edit`.
+    """Changes of particles, bodies, joints and gravity, made together when the `with` block ends. See
+    `Simulation.edit`.
 
     Where anything is wrong - an unknown id, a wrong shape, a number that is not finite - an
     `EditError` is raised and nothing has changed; an exception within the block leaves everything
-    as it was, too. Values are set first, then particles are removed, then new ones added.
+    as it was, too. Values are set first, then particles are removed, then new ones added, then bodies
+    and joints change in the order of the calls.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -104,10 +106,13 @@ class Edit:
         self._temperatures = (
             None if temperatures is None else Column(self, "temperatures", temperatures.astype(np.float64))
         )
+        roster = zip(simulation.bodies.values(), simulation.body_poses, simulation.body_velocities, strict=True)
         self.bodies = {
-            name: BodyEdit(name, body.velocity, body.angular_velocity) for name, body in simulation.bodies.items()
+            body.name: BodyEdit(body.name, body._index, pose, velocity) for body, pose, velocity in roster
         }
-        """Rigid bodies by name, to set their ``velocity`` and ``angular_velocity``."""
+        """Rigid bodies by name, to set their ``velocity``, ``angular_velocity``, ``position`` and ``angle``, to
+        ``push`` them, and to ``set`` their properties."""
+        self._world: list[dict[str, Any]] = []
         self._free = simulation.phases != Phase.RIGID
         self._motions: list[tuple[str, list[int], str]] = []
         self._removed: set[int] = set()
@@ -156,6 +161,67 @@ class Edit:
                 "motion": motion,
             }
         )
+
+    def add_block(self, material: str, low: npt.ArrayLike, high: npt.ArrayLike, **values: Any) -> None:
+        """Fills a rectangle with particles of a material, from its lower left to its upper right corner [m]."""
+        spacing = self._simulation.spacing
+        corners = np.array([pair(low, "low", EditError), pair(high, "high", EditError)])
+        columns, rows = np.maximum(np.rint((corners[1] - corners[0]) / spacing), 0).astype(int)
+        x, y = np.meshgrid(np.arange(columns) + 0.5, np.arange(rows) + 0.5)
+        self.add(material, corners[0] + spacing * np.column_stack([x.ravel(), y.ravel()]), **values)
+
+    # -- bodies, joints, gravity ---------------------------------------------------------------
+
+    @property
+    def gravity(self) -> tuple[float, float]:
+        """Gravity [m/s^2], to be set."""
+        return self._simulation.gravity
+
+    @gravity.setter
+    def gravity(self, value: npt.ArrayLike) -> None:
+        self._world.append({"change": "gravity", "gravity": pair(value, "gravity", EditError)})
+
+    def add_body(self, name: str, at: npt.ArrayLike, **values: Any) -> None:
+        """Adds a rigid body at `at` [m]; the keys are those of ``[[body]]`` in a scene file: one of ``radius``,
+        ``size`` and ``outline``, and ``density``, ``velocity``, ``kind`` and so on.
+
+        Where there are fluids the scene must have a body from the start.
+        """
+        body = {"name": name, "position": pair(at, "at", EditError), **values}
+        self._world.append({"change": "add_body", "body": plain(body)})
+
+    def remove_body(self, name: str) -> None:
+        """Takes a body away, with its joints."""
+        self._world.append({"change": "remove_body", "body": self._body(name)._number})
+
+    def add_joint(self, kind: str, body: str, at: npt.ArrayLike, **values: Any) -> None:
+        """Links two bodies, or a body and the world, at a point [m], where they are then; the keys are those of
+        ``[[joint]]`` in a scene file. Bodies that this edit adds before can be named."""
+        joint = {"kind": kind, "body": body, "at": pair(at, "at", EditError), **values}
+        self._world.append({"change": "add_joint", "joint": plain(joint)})
+
+    def remove_joint(self, joint: str | int) -> None:
+        """Takes a joint away, by name or by its place in `Simulation.joints`."""
+        self._world.append({"change": "remove_joint", "joint": self._joint(joint)})
+
+    def set_motor(self, joint: str | int, speed: float | None, limit: float | None = None) -> None:
+        """Changes the motor of a hinge (`speed` in rad/s, `limit` in N m) or slider (m/s, N); without a speed it is
+        taken away."""
+        change = {"change": "set_motor", "joint": self._joint(joint), "speed": speed, "limit": limit}
+        self._world.append(plain(change))
+
+    def _body(self, name: str) -> BodyEdit:
+        if name not in self.bodies:
+            raise EditError(f"there is no body {name!r}")
+        return self.bodies[name]
+
+    def _joint(self, joint: str | int) -> int:
+        if not isinstance(joint, str):
+            return int(joint)
+        for number, known in enumerate(self._simulation.joints):
+            if known.name == joint and not known.removed:
+                return number
+        raise EditError(f"there is no joint {joint!r}")
 
     def script(self, which: Any) -> None:
         """From now on only their velocity moves these particles, and nothing but you changes it."""
@@ -215,11 +281,12 @@ class Edit:
         if self._moment != (native.substeps_done, native.count):
             raise EditError("the simulation was stepped or edited within the edit")
         bodies = [
-            (index, body.velocity.tolist(), body.angular_velocity)
-            for index, body in enumerate(self.bodies.values())
+            (body._number, body.velocity.tolist(), body.angular_velocity)
+            for body in self.bodies.values()
             if body._changed
         ]
-        first, last = native.apply(self._changes(), sorted(self._removed), self._added, bodies)
+        world = [change for body in self.bodies.values() for change in body._changes()] + self._world
+        first, last = native.apply(self._changes(), sorted(self._removed), self._added, bodies, world)
         self.added = fixed(np.arange(first, last, dtype=np.uint32))
 
 

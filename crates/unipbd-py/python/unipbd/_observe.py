@@ -10,13 +10,13 @@ import numpy.typing as npt
 
 from . import _native
 from ._arrays import Doubles, Floats, Ids
-from ._body import Body
 from ._material import Material
 from ._scene import Scene
 from ._threads import thread_count
+from ._world import World
 
 
-class Observable:
+class Observable(World):
     """What can be read of a `Simulation`, between two frames.
 
     Arrays have one row per particle in ascending order of ids, are C-contiguous copies, and cannot
@@ -147,12 +147,7 @@ class Observable:
         """Ids of the particles of one material in ascending order, uint32, shape (M,)."""
         return self.material(material).ids
 
-    # -- bodies and walls ----------------------------------------------------------------------
-
-    @property
-    def bodies(self) -> Mapping[str, Body]:
-        """Rigid bodies by name."""
-        return {name: Body(self, index) for index, name in enumerate(self._native.body_names())}
+    # -- walls ----------------------------------------------------------------------------
 
     @property
     def walls(self) -> list[Doubles]:
@@ -171,7 +166,8 @@ class Observable:
 
     @property
     def wall_forces(self) -> dict[str, tuple[float, float]]:
-        """Mean forces of the fluids in the last frame on the walls that have a ``name`` [N].
+        """Mean forces of fluids and bodies in the last frame on the walls that have a ``name`` [N];
+        `diagnostics` has them apart, as ``fluid_force`` and ``contact_force``.
 
         The sides of a tank are ``"NAME left"``, ``"NAME right"``, ``"NAME bottom"`` and ``"NAME top"``.
         """

@@ -162,6 +162,8 @@ class Simulation(Drawable):
                 e.remove(sim.positions[:, 1] > 2.0)
                 e.add("water", positions=xy, velocities=(0, -1))
                 e.bodies["raft"].velocity = (0.5, 0)
+                e.add_body("ball", at=(1, 3), radius=0.1)
+                e.gravity = (0, -1.6)
 
         See `help(unipbd.Edit)`.
         """

@@ -186,7 +186,7 @@ impl ShapeMatching {
         let whole = member.inverse_mass * (1.0 / self.rows[m].len() as f64 + lever * lever / member.spread);
         let shares = (f64::from(counts.members[m]) / OVER_RELAXATION).max(1.0);
         let alone = member.inverse_mass * f64::from(counts.samples[m][k]);
-        let stiff = member.part(f64::from(now.dt), self.rounds);
+        let stiff = member.part(f64::from(now.dt));
         stiff * whole * shares + (1.0 - stiff) * alone
     }
 

@@ -8,6 +8,9 @@ use std::ops::Range;
 /// The time in which a body loses the part of its wobble that is its damping [s].
 const DAMPING_TIME: f64 = 1.0 / 60.0;
 
+/// Stiffness times dt^2 over mass up to which springs act as at the start of a substep: beyond 1 that is unstable.
+const STIFFEST: f64 = 0.8;
+
 /// A body as particles: one whose shape is matched, or a rigid one that such bodies touch.
 pub struct Member {
     /// Id of its first sample.
@@ -76,14 +79,19 @@ impl Member {
         Fit { center, rotation: if rotation == Vector64::ZERO { Vector64::X } else { rotation } }
     }
 
-    /// Part of the way to the fit that one of so many rounds goes in a substep of this length [s]; all of it where a
-    /// pose moves the body.
-    ///
-    /// A substep leaves a/(1 + a) of the way with a = compliance mass / dt^2 (implicit Euler; Macklin et al. 2016): at
-    /// rest the samples lie where the spring balances gravity, whatever the length of the substep.
-    pub(super) fn part(&self, dt: f64, rounds: f64) -> f64 {
-        let soft = self.softness.unwrap_or(0.0) / (dt * dt);
-        1.0 - (soft / (1.0 + soft)).powf(1.0 / rounds)
+    /// Stiffness of a sample's spring to the shape times dt^2 over its mass, in a substep of this length [s]; infinite
+    /// for a rigid body, or where a pose moves it.
+    pub(super) fn stiffness(&self, dt: f64) -> f64 {
+        match self.softness {
+            Some(softness) if softness > 0.0 => dt * dt / softness,
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// Part of the way to the fit that a free sample goes in a substep of this length [s].
+    pub(super) fn part(&self, dt: f64) -> f64 {
+        let stiffness = self.stiffness(dt);
+        if stiffness.is_finite() { stiffness / (1.0 + stiffness) } else { 1.0 }
     }
 
     /// Part of its wobble that it loses in a substep of this length [s].
@@ -91,11 +99,31 @@ impl Member {
         1.0 - (1.0 - self.damping).powf(dt / DAMPING_TIME)
     }
 
-    /// Moves the samples towards the fit, a part of the way.
-    pub(super) fn pull_to_shape(&self, places: &mut [Vector64], part: f64) {
+    /// Displaces the samples of a soft body as their springs do in a substep of this length [s] where nothing else moves
+    /// them from `starts`: what the iterations start from, so that at rest a body lies as its springs balance its weight,
+    /// whatever the length of the substep.
+    pub(super) fn begin(&self, places: &mut [Vector64], starts: &[Vector64], pulled: &mut [Vector64], dt: f64) {
+        let stiffness = self.stiffness(dt);
+        if !stiffness.is_finite() {
+            return;
+        }
+        let (stiffness, Fit { center, rotation }) = (stiffness.min(STIFFEST), self.fit(starts));
+        for (((place, start), r), pulled) in places.iter_mut().zip(starts).zip(&self.rest).zip(pulled) {
+            *pulled = (center + rotation.rotate(*r) - *start) * stiffness;
+            *place += *pulled;
+        }
+    }
+
+    /// Moves the samples towards the fit. With k = stiffness and C = x - g, the displacement u of a sample by its spring
+    /// becomes u = -k C at the end of the iterations (implicit Euler, as in Macklin et al. 2016).
+    pub(super) fn pull_to_shape(&self, places: &mut [Vector64], pulled: &mut [Vector64], dt: f64) {
+        let stiffness = self.stiffness(dt);
         let Fit { center, rotation } = self.fit(places);
-        for (place, r) in places.iter_mut().zip(&self.rest) {
-            *place += (center + rotation.rotate(*r) - *place) * part;
+        for ((place, r), pulled) in places.iter_mut().zip(&self.rest).zip(pulled) {
+            let way = center + rotation.rotate(*r) - *place;
+            let step = if stiffness.is_finite() { (way * stiffness - *pulled) / (1.0 + stiffness) } else { way };
+            *pulled += step;
+            *place += step;
         }
     }
 }

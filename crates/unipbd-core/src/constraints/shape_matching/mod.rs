@@ -24,8 +24,10 @@ const ROUNDS: usize = 2;
 pub struct ShapeMatching {
     members: Vec<Member>,
     spacing: f64,
-    /// Rounds in a substep: those of all iterations.
-    rounds: f64,
+    /// How far the springs of the samples have moved them in this substep, member by member [m].
+    pulled: Vec<Vec<Vector64>>,
+    /// Whether the substep has only begun.
+    begun: bool,
     /// How friction coefficients combine.
     rule: FrictionRule,
     /// Rows of the samples, member by member.
@@ -39,13 +41,14 @@ pub struct ShapeMatching {
 }
 
 impl ShapeMatching {
-    /// A group of these bodies, in ascending order of their samples' ids, for so many iterations in a substep.
-    pub fn new(members: Vec<Member>, spacing: f64, iterations: u32, rule: FrictionRule) -> Self {
+    /// A group of these bodies, in ascending order of their samples' ids.
+    pub fn new(members: Vec<Member>, spacing: f64, rule: FrictionRule) -> Self {
         let count = members.len();
         ShapeMatching {
             members,
             spacing,
-            rounds: ROUNDS as f64 * f64::from(iterations),
+            pulled: vec![Vec::new(); count],
+            begun: false,
             rule,
             rows: vec![Vec::new(); count],
             places: vec![Vec::new(); count],
@@ -68,6 +71,15 @@ impl ShapeMatching {
         }
     }
 
+    /// Lets the springs of soft bodies act as at the start of the substep.
+    fn begin_pull(&mut self, now: Substep<'_>) {
+        for (k, member) in self.members.iter().enumerate().filter(|(_, member)| member.is_matched()) {
+            let starts: Vec<Vector64> =
+                self.rows[k].iter().map(|&row| wide(now.particles.starts()[row as usize])).collect();
+            member.begin(&mut self.places[k], &starts, &mut self.pulled[k], f64::from(now.dt));
+        }
+    }
+
     /// Moves the samples of soft and stiff bodies towards their shapes.
     fn pull_to_shape(&mut self, now: Substep<'_>) {
         for k in (0..self.members.len()).filter(|&k| self.members[k].is_matched()) {
@@ -78,7 +90,7 @@ impl ShapeMatching {
             };
             let before = spin(&self.places[k], &self.rows[k]);
             let member = &self.members[k];
-            member.pull_to_shape(&mut self.places[k], member.part(f64::from(now.dt), self.rounds));
+            member.pull_to_shape(&mut self.places[k], &mut self.pulled[k], f64::from(now.dt));
             self.taken[k] += (before - spin(&self.places[k], &self.rows[k])) / member.inverse_mass;
         }
     }
@@ -95,14 +107,22 @@ impl ConstraintGroup for ShapeMatching {
 
     fn begin_substep(&mut self, now: Substep<'_>) {
         self.taken.fill(0.0);
+        self.begun = true;
         for (rows, member) in self.rows.iter_mut().zip(&self.members) {
             rows.clear();
             rows.extend(member.ids().filter_map(|id| now.rows.row(id)));
+        }
+        for (pulled, rows) in self.pulled.iter_mut().zip(&self.rows) {
+            pulled.clear();
+            pulled.resize(rows.len(), Vector64::ZERO);
         }
     }
 
     fn project(&mut self, now: Substep<'_>, out: &mut Corrections) {
         self.place_all(now);
+        if std::mem::take(&mut self.begun) {
+            self.begin_pull(now);
+        }
         self.fit_all();
         self.find_touches(now);
         for _ in 0..ROUNDS {

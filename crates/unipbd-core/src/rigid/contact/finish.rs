@@ -41,6 +41,7 @@ impl Contacts {
         let rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches());
         for (contact, cache) in rows.filter(|(contact, _)| contact.is_pressed()) {
             let push = contact.total_push(cache, self.dt);
+            self.watch.add(contact, cache.wall, push.linear);
             bodies.contact_loads[contact.a as usize] += push.on_a();
             if contact.b != NONE {
                 bodies.contact_loads[contact.b as usize] -= push.on_b();

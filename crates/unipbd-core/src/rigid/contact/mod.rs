@@ -44,10 +44,12 @@ mod solver;
 mod sweep;
 mod touch;
 mod union_find;
+mod watch;
 
 pub use islands::SleepSettings;
 pub use joint::{DistanceRule, Joint, JointKind, JointState, Limits, Motor, Strength};
 pub use settings::{ContactSettings, Depenetration};
+pub use watch::{ContactEvent, ContactPair};
 
 pub(crate) use linked::Linked;
 pub(crate) use manifold::{Contact, entry};
@@ -70,6 +72,7 @@ use narrow_phase::NarrowPhase;
 use solver::InTurn;
 use std::sync::Arc;
 use sweep::Order;
+use watch::Watch;
 
 /// The contacts and joints of all bodies: solver state that lasts from substep to substep.
 #[derive(Clone, serde::Serialize, serde::Deserialize)]
@@ -81,6 +84,8 @@ pub struct Contacts {
     joints: Vec<Linked>,
     /// Joints that broke in the last frame.
     broke: Vec<u32>,
+    #[serde(skip)]
+    watch: Watch,
     islands: Islands,
     jacobi: Jacobi,
     split: Vec<InverseMass>,
@@ -109,6 +114,11 @@ pub struct ContactPoint {
     pub other: Option<u32>,
     /// The wall; `None` for a contact of two bodies.
     pub wall: Option<u32>,
+    /// From the centre of mass of the first body to the point [m].
+    pub arm: Vector64,
+    /// The point, at the poses of the end of the frame [m]; only where [`Solver::contacts`](crate::Solver::contacts) tells
+    /// it.
+    pub position: Vector64,
     /// Unit normal, towards the first body.
     pub normal: Vector64,
     /// Distance of the surfaces at the start of the last substep, negative when they overlap [m].
@@ -131,6 +141,7 @@ impl Contacts {
             narrow_phase: NarrowPhase::new(walls, settings.friction_rule),
             joints: Vec::new(),
             broke: Vec::new(),
+            watch: Watch::default(),
             islands: Islands::default(),
             jacobi: Jacobi::default(),
             split: Vec::new(),
@@ -257,6 +268,9 @@ impl Contacts {
         // Sleeping bodies load their supports as they did when they fell asleep.
         for (contact, cache) in self.narrow_phase.frozen() {
             let push = contact.total_push(cache, 1.0);
+            if contact.is_pressed() {
+                self.watch.add(contact, cache.wall, push.linear * frame_time);
+            }
             if cache.wall != NONE {
                 self.wall_impulses[cache.wall as usize] -= push.linear * frame_time;
             }
@@ -267,6 +281,7 @@ impl Contacts {
             }
         }
         self.finish_joints(frame_time);
+        self.watch.finish_frame(bodies);
         for (force, impulse) in self.wall_forces.iter_mut().zip(&mut self.wall_impulses) {
             *force = std::mem::take(impulse) / frame_time;
         }
@@ -369,6 +384,8 @@ impl Contacts {
                 body: contact.a,
                 other: index(contact.b),
                 wall: index(cache.wall),
+                arm: contact.arm_a(point),
+                position: Vector64::ZERO,
                 normal: contact.normal,
                 gap: point.gap,
                 normal_force: point.normal_impulse / (self.dt * self.dt) + cache.rebound[k].normal / self.dt,

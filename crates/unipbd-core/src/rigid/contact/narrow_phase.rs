@@ -122,11 +122,6 @@ impl NarrowPhase {
         self.reach.restart();
     }
 
-    /// Convex pieces of all bodies and walls where they were at the last search.
-    pub fn pieces(&self) -> &Pieces {
-        &self.pieces
-    }
-
     /// Begins a frame of this length [s].
     pub fn begin_frame(&mut self, frame: f64) {
         self.reach.begin_frame(frame);

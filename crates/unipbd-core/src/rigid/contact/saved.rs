@@ -26,6 +26,7 @@ impl Contacts {
             },
             joints: saved.joints,
             broke: Vec::new(),
+            watch: self.watch.clone(),
             islands: Islands::from_saved(saved.islands, bodies.len()),
             jacobi,
             split: Vec::new(),
