@@ -58,8 +58,13 @@ fn sides() -> [[[f64; 2]; 2]; 4] {
 }
 
 fn obstacles(mut scene: Scene) -> Scene {
-    let obstacle =
-        |[min, max]: [[f64; 2]; 2]| Obstacle { name: String::new(), min, max, friction: None, slip: Default::default() };
+    let obstacle = |[min, max]: [[f64; 2]; 2]| Obstacle {
+        name: String::new(),
+        min,
+        max,
+        friction: None,
+        slip: Default::default(),
+    };
     scene.obstacle = sides().map(obstacle).to_vec();
     scene
 }

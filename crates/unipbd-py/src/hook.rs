@@ -87,7 +87,7 @@ impl Wishes {
 impl Substep {
     fn new(view: &SubstepView<'_>, hook: String) -> Self {
         let seen = |(body, number): (&unipbd_core::rigid::Body, u32)| Seen {
-            name: body.name.clone(),
+            name: if body.removed { String::new() } else { body.name.clone() },
             kind: body.kind,
             pose: view.body_pose(number),
             velocity: view.body_velocity(number),

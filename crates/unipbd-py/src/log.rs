@@ -79,7 +79,7 @@ fn frame_dict(py: Python<'_>, frame: Frame) -> PyResult<Bound<'_, PyDict>> {
     dict.set_item("density_errors", snapshot.density_errors.map(|errors| arrays::fixed(py, errors)))?;
     dict.set_item("temperatures", snapshot.temperatures.map(|values| arrays::fixed(py, values)))?;
     let bodies = PyList::empty(py);
-    for recorded in &snapshot.bodies {
+    for recorded in snapshot.bodies.iter().filter(|body| !body.removed) {
         let entry = body::shape(py, recorded)?;
         entry.update(body::motion(py, recorded)?.as_mapping())?;
         bodies.append(entry)?;

@@ -33,7 +33,8 @@ pub(super) fn contacts(scene: &Scene) -> Contacts {
     let ContactDescription { method, relaxation, iterations, friction_rule, sleep, sleep_speed, sleep_delay } =
         scene.contacts;
     let sleep = sleep.then_some(SleepSettings { speed: sleep_speed, delay: sleep_delay });
-    let settings = ContactSettings { method, relaxation, iterations, friction_rule, sleep, ..ContactSettings::default() };
+    let settings =
+        ContactSettings { method, relaxation, iterations, friction_rule, sleep, ..ContactSettings::default() };
     match scene.legacy.changes_contacts() {
         false => Contacts::new(&walls(scene), settings),
         true => legacy::contacts(&walls(scene), settings, &scene.legacy),
@@ -48,7 +49,7 @@ pub(super) fn solids(scene: &Scene) -> Vec<Solid> {
         let pose = if moves { spec.motion.pose(spec.pose, 0.0) } else { spec.pose };
         Solid { shape: spec.shape.tidied(), pose }
     };
-    specs.map(start).collect()
+    specs.filter(|spec| !spec.sensor).map(start).collect()
 }
 
 /// A body and its copies.

@@ -19,8 +19,8 @@ use crate::parallel::Parallelism;
 use crate::particles::{NewParticle, OptionalColumns, Particles};
 use crate::periodic::{Periodic, PeriodicAxis};
 use crate::phase::{MaterialIndex, Phase};
-use crate::rigid::Bodies;
 use crate::pressure_grid::{Accuracy, Mixture, PressureGrid};
+use crate::rigid::Bodies;
 use crate::rng::Rng;
 use crate::scene::{BodySolver, CheckedScene, GradientPoint, MaterialRef, Points, Problems, Scene, disc_points};
 use crate::sleep::LiquidSleep;
@@ -161,11 +161,7 @@ fn groups(
         groups.push(density.group);
     }
     if let Some(rigid) = rigid.filter(|rigid| rigid.any_matched()) {
-        groups.push(Box::new(ShapeMatching::new(
-            rigid.members(),
-            scene.spacing,
-            scene.contacts.friction_rule,
-        )));
+        groups.push(Box::new(ShapeMatching::new(rigid.members(), scene.spacing, scene.contacts.friction_rule)));
     }
     groups.extend(ropes.groups());
     groups

@@ -125,7 +125,9 @@ impl Checker<'_> {
             let entry = roster.bodies.iter().find(|entry| entry.there && entry.name == *name);
             match entry {
                 None => return unfit(format!("there is no body \"{name}\"")),
-                Some(entry) if entry.soft => return unfit(format!("the body \"{name}\" is particles: no joint holds it")),
+                Some(entry) if entry.soft => {
+                    return unfit(format!("the body \"{name}\" is particles: no joint holds it"));
+                }
                 Some(_) => {}
             }
         }

@@ -14,8 +14,8 @@ mod apply;
 mod bodies;
 mod check;
 mod check_bodies;
-mod world;
 mod error;
+mod world;
 
 pub use crate::rigid::BodyChange;
 pub use error::EditError;

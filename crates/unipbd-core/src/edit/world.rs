@@ -84,9 +84,7 @@ impl Edit {
     pub fn add_block(self, material: &str, min: Vector64, max: Vector64, spacing: f64) -> Self {
         let count = |from: f64, to: f64| ((to - from) / spacing).round().clamp(0.0, 1e5) as u32;
         let (columns, rows) = (count(min.x, max.x), count(min.y, max.y));
-        let at = |row: u32, column: u32| {
-            min + Vector64::new(f64::from(column) + 0.5, f64::from(row) + 0.5) * spacing
-        };
+        let at = |row: u32, column: u32| min + Vector64::new(f64::from(column) + 0.5, f64::from(row) + 0.5) * spacing;
         let positions = (0..rows).flat_map(|row| (0..columns).map(move |column| at(row, column)));
         self.add_points(Points::new(material, positions.collect()))
     }

@@ -182,7 +182,9 @@ impl Bodies {
             && self.cores == other.cores
             && self.scripts.len() == bodies
             && self.specs.len() == bodies;
-        let same = |(a, b): (&Body, &Body)| a.name == b.name && a.removed == b.removed && a.kind == b.kind && a.samples.len() == b.samples.len();
+        let same = |(a, b): (&Body, &Body)| {
+            a.name == b.name && a.removed == b.removed && a.kind == b.kind && a.samples.len() == b.samples.len()
+        };
         whole
             && same_kind
             && self.views.len() == bodies

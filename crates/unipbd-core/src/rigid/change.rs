@@ -103,7 +103,8 @@ impl Bodies {
         let k = id as usize;
         let pose = self.poses[k];
         let name = std::mem::take(&mut self.specs[k].name);
-        let spec = BodySpec { name, kind: BodyKind::Static, pose, ..BodySpec::new(Shape::Disc { radius: self.spacing }) };
+        let spec =
+            BodySpec { name, kind: BodyKind::Static, pose, ..BodySpec::new(Shape::Disc { radius: self.spacing }) };
         self.specs[k] = spec;
         self.derive_again(k);
         (self.poses[k], self.velocities[k], self.displacements[k]) = (pose, Twist::ZERO, Twist::ZERO);
@@ -186,7 +187,8 @@ impl Bodies {
         self.place(id, pose, time);
         if self.views[k].kind == BodyKind::Kinematic {
             let script = &self.scripts[k];
-            self.velocities[k] = script.motion.velocity(time).moved_to(Vector64::from_angle(pose.angle).rotate(-script.origin));
+            self.velocities[k] =
+                script.motion.velocity(time).moved_to(Vector64::from_angle(pose.angle).rotate(-script.origin));
             self.refresh_view(k);
         }
     }

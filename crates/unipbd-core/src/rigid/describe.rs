@@ -98,10 +98,9 @@ pub(crate) fn joint(description: &JointDescription, bodies: &Bodies) -> Option<J
     let kind = match description.kind {
         JointRule::Hinge => JointKind::Hinge {
             motor: description.motor_speed_deg.map(|speed| motor(speed.to_radians(), description.motor_torque)),
-            limits: description.limits_deg.map(|[least, most]| Limits {
-                least: angle + least.to_radians(),
-                most: angle + most.to_radians(),
-            }),
+            limits: description
+                .limits_deg
+                .map(|[least, most]| Limits { least: angle + least.to_radians(), most: angle + most.to_radians() }),
         },
         JointRule::Rod => rod(DistanceRule::Exact),
         JointRule::Rope => rod(DistanceRule::AtMost),

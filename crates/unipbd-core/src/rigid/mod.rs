@@ -13,9 +13,9 @@ mod wall;
 pub use crate::scene::BodyKind;
 pub use body_set::{Bodies, InverseMass};
 pub use change::BodyChange;
-pub(crate) use query::{Outline, rectangle as box_outline};
-pub use motion::{Motion, Repeat, Waypoint};
 pub(crate) use describe::{joint, specification, strength};
+pub use motion::{Motion, Repeat, Waypoint};
+pub(crate) use query::{Outline, rectangle as box_outline};
 pub use specification::{BodySpec, CollisionFilter, Damping, Elasticity, MassSpec, Rotation, Surface};
 pub use wall::{Boundary, Wall};
 

@@ -49,7 +49,6 @@ pub use sources::*;
 pub use walls::*;
 pub use waves::*;
 
-pub(crate) use walls::body_friction;
 pub(crate) use contacts::{OVER_RELAXATION, SLEEP_DELAY, SLEEP_SPEED};
 pub(crate) use copies::MOST_BODIES;
 pub(crate) use crowding::crowd;
@@ -57,3 +56,4 @@ pub(crate) use layout::{block_points, disc_points};
 pub(crate) use substep_law::{COURANT, SubstepLaw};
 pub(crate) use validate::FARTHEST;
 pub use validate::{FRAME_RATES, LONGEST_DURATION};
+pub(crate) use walls::body_friction;

@@ -83,9 +83,8 @@ impl World {
 
     pub(super) fn wall_forces(&self) -> Vec<WallForce> {
         let names = self.parts.walls.measured().iter();
-        let of_bodies = |name: &str| {
-            self.parts.rigid.as_ref().map_or(Vector64::ZERO, |rigid| rigid.contacts.wall_force(name))
-        };
+        let of_bodies =
+            |name: &str| self.parts.rigid.as_ref().map_or(Vector64::ZERO, |rigid| rigid.contacts.wall_force(name));
         let both = |(name, &fluid_force): (&String, &Vector64)| {
             let contact_force = of_bodies(name);
             WallForce { name: name.clone(), force: fluid_force + contact_force, fluid_force, contact_force }

@@ -96,7 +96,8 @@ fn a_slider_motor_lifts_at_its_speed_and_yields_at_its_force() {
     for substeps in ALL {
         let lifting = |force: f64| {
             let slider = JointDescription::new(JointRule::Slider, "box", [0.0, 0.0]);
-            let slider = JointDescription { axis: Some([0.0, 1.0]), motor_speed: Some(0.5), motor_force: force, ..slider };
+            let slider =
+                JointDescription { axis: Some([0.0, 1.0]), motor_speed: Some(0.5), motor_force: force, ..slider };
             let body = named("box", BodyDescription { mass: Some(10.0), ..BodyDescription::disc(0.2, [0.0, 0.0]) });
             run(&joined(free(substeps, vec![body]), slider), 1.0)
         };
@@ -139,7 +140,12 @@ fn an_overloaded_joint_breaks_and_says_so() {
     for substeps in ALL {
         for (strength, breaks) in [(1500.0, true), (1700.0, false)] {
             let rod = JointDescription::new(JointRule::Rod, "box", [0.0, 0.2]);
-            let rod = JointDescription { name: "hook".into(), other_at: Some([0.0, 1.0]), break_force: Some(strength), ..rod };
+            let rod = JointDescription {
+                name: "hook".into(),
+                other_at: Some([0.0, 1.0]),
+                break_force: Some(strength),
+                ..rod
+            };
             let body = named("box", BodyDescription::rectangle([0.4, 0.4], [0.0, 0.0]));
             let mut solver = build(&joined(free(substeps, vec![body]), rod));
             step(&mut solver, 0.5);
@@ -155,7 +161,13 @@ fn an_overloaded_joint_breaks_and_says_so() {
 #[test]
 fn damped_bodies_slow_down_and_fall_at_their_terminal_speed() {
     for substeps in ALL {
-        let body = BodyDescription { linear_damping: 2.0, angular_damping: 3.0, velocity: [5.0, 0.0], spin_deg: 100.0, ..BodyDescription::disc(0.2, [0.0, 0.0]) };
+        let body = BodyDescription {
+            linear_damping: 2.0,
+            angular_damping: 3.0,
+            velocity: [5.0, 0.0],
+            spin_deg: 100.0,
+            ..BodyDescription::disc(0.2, [0.0, 0.0])
+        };
         let solver = run(&free(substeps, vec![body]), 1.0);
         let body = &solver.bodies()[0];
         let fell = -9.81 / 2.0 * (1.0 - (-2.0f64).exp());
@@ -184,7 +196,11 @@ fn groups_override_layers_and_sensors_push_nothing() {
             body(0, 4, [4.0, 0.7]),
         ];
         let mut scene = floored(substeps, pairs);
-        let gate = BodyDescription { sensor: true, kind: BodyKind::Static, ..BodyDescription::rectangle([1.0, 0.4], [0.0, 0.3]) };
+        let gate = BodyDescription {
+            sensor: true,
+            kind: BodyKind::Static,
+            ..BodyDescription::rectangle([1.0, 0.4], [0.0, 0.3])
+        };
         scene.body.push(gate);
         let solver = run(&scene, 2.0);
         let heights: Vec<f64> = solver.bodies().iter().map(|body| body.position.y).collect();

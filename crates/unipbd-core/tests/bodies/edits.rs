@@ -4,8 +4,8 @@ use super::common::{ALL, build, floored, free, named, step};
 use unipbd_core::edit::{BodyChange, Edit};
 use unipbd_core::rigid::contact::Motor;
 use unipbd_core::scene::{
-    Block, BodyDescription, BodyKind, BodySolver, JointDescription, JointRule, Liquid, MotionDescription, Rope,
-    Scene, Solid, Substeps, Tank,
+    Block, BodyDescription, BodyKind, BodySolver, JointDescription, JointRule, Liquid, MotionDescription, Rope, Scene,
+    Solid, Substeps, Tank,
 };
 use unipbd_core::{Solver, State, Vector64};
 

@@ -41,7 +41,11 @@ fn contacts_tell_pair_points_and_load_awake_or_asleep() {
 fn events_tell_when_contacts_begin_and_end() {
     for substeps in ALL {
         let ball = BodyDescription { restitution: 0.5, ..BodyDescription::disc(0.2, [0.0, 1.2]) };
-        let gate = BodyDescription { sensor: true, kind: BodyKind::Static, ..BodyDescription::rectangle([1.0, 0.2], [0.0, 0.8]) };
+        let gate = BodyDescription {
+            sensor: true,
+            kind: BodyKind::Static,
+            ..BodyDescription::rectangle([1.0, 0.2], [0.0, 0.8])
+        };
         let mut solver = build(&floored(substeps, vec![ball, named("gate", gate)]));
         solver.watch_contacts(true);
         step(&mut solver, 1.0);
@@ -62,7 +66,8 @@ fn events_tell_when_contacts_begin_and_end() {
 #[test]
 fn an_impact_gives_its_impulse() {
     for substeps in ALL {
-        let ball = BodyDescription { restitution: 1.0, velocity: [0.0, -3.0], ..BodyDescription::disc(0.2, [0.0, 0.45]) };
+        let ball =
+            BodyDescription { restitution: 1.0, velocity: [0.0, -3.0], ..BodyDescription::disc(0.2, [0.0, 0.45]) };
         let mut scene = floored(substeps, vec![ball]);
         scene.gravity = [0.0, 0.0];
         let mut solver = build(&scene);
@@ -82,7 +87,14 @@ fn hall() -> Solver {
     let bodies = vec![
         named("box", BodyDescription::rectangle([0.4, 0.4], [1.0, 0.2])),
         named("ball", BodyDescription { layers: vec![2], ..BodyDescription::disc(0.3, [3.0, 0.3]) }),
-        named("gate", BodyDescription { sensor: true, kind: BodyKind::Static, ..BodyDescription::rectangle([0.2, 2.0], [2.0, 1.0]) }),
+        named(
+            "gate",
+            BodyDescription {
+                sensor: true,
+                kind: BodyKind::Static,
+                ..BodyDescription::rectangle([0.2, 2.0], [2.0, 1.0])
+            },
+        ),
     ];
     let mut scene = floored(Substeps::Auto, bodies);
     scene.obstacle = vec![Obstacle::new([4.0, 0.0], [5.0, 1.0])];
@@ -114,7 +126,11 @@ fn places_boxes_and_neighbours_are_found() {
     assert_eq!(query().in_box(at(1.1, 0.1), at(2.8, 0.5)), [Solid::Body(0), Solid::Body(1)]);
     assert_eq!(query().with_sensors().in_box(at(1.9, 1.9), at(2.5, 2.5)), [Solid::Body(2)]);
     let near = query().nearest(at(1.6, 0.3), 0.5).expect("the box is near");
-    assert!(near.solid == Solid::Body(0) && (near.distance - 0.4).abs() < 1e-12 && (near.point - at(1.2, 0.3)).length() < 1e-12);
+    assert!(
+        near.solid == Solid::Body(0)
+            && (near.distance - 0.4).abs() < 1e-12
+            && (near.point - at(1.2, 0.3)).length() < 1e-12
+    );
     assert_eq!(query().nearest(at(1.6, 3.0), 0.5), None);
     assert_eq!(solver.query().nearest(at(1.9, 0.1), 1.0).map(|near| near.solid), Some(Solid::Wall(0)));
     solver.apply(&Edit::new().move_body(1, at(2.0, 0.5), 0.0)).expect("it is there");
@@ -125,7 +141,8 @@ fn places_boxes_and_neighbours_are_found() {
 
 #[test]
 fn poses_between_frames_lie_on_the_way() {
-    let body = BodyDescription { velocity: [3.0, 0.0], spin_deg: 90.0, ..BodyDescription::rectangle([0.4, 0.4], [0.0, 5.0]) };
+    let body =
+        BodyDescription { velocity: [3.0, 0.0], spin_deg: 90.0, ..BodyDescription::rectangle([0.4, 0.4], [0.0, 5.0]) };
     let mut solver = build(&floored(Substeps::Auto, vec![body]));
     step(&mut solver, 0.1);
     let before = solver.bodies()[0].clone();

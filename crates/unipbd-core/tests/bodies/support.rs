@@ -52,7 +52,11 @@ fn friction_combines_by_the_rule_of_the_scene() {
         FrictionRule::Maximum,
     ] {
         for substeps in ALL {
-            let puck = BodyDescription { friction: 0.2, velocity: [8.0, 0.0], ..BodyDescription::rectangle([0.6, 0.2], [0.0, 0.1]) };
+            let puck = BodyDescription {
+                friction: 0.2,
+                velocity: [8.0, 0.0],
+                ..BodyDescription::rectangle([0.6, 0.2], [0.0, 0.1])
+            };
             let mut scene = floored(substeps, vec![puck]);
             scene.half_plane[0].friction = Some(0.8);
             scene.contacts.friction_rule = rule;

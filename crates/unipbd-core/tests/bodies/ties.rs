@@ -118,11 +118,12 @@ fn a_soft_body_has_the_same_shape_at_every_number_of_substeps() {
         let mut solver = build(&floored(Substeps::Fixed(substeps), vec![soft]));
         step(&mut solver, 6.0);
         let frames = 60;
-        (0..frames).map(|_| {
-            step(&mut solver, 1.0 / 60.0);
-            solver.bodies()[0].position.y / f64::from(frames)
-        })
-        .sum::<f64>()
+        (0..frames)
+            .map(|_| {
+                step(&mut solver, 1.0 / 60.0);
+                solver.bodies()[0].position.y / f64::from(frames)
+            })
+            .sum::<f64>()
     };
     let mut worst = 0.0f64;
     for compliance in [0.0, 3e-8, 1e-7, 2e-7, 4e-7, 1e-6] {

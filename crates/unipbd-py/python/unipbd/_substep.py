@@ -83,7 +83,8 @@ class Substep(Particles[_native.Substep]):
     def bodies(self) -> Mapping[str, SubstepBody]:
         """Rigid bodies by name, to be looked at, pushed and driven."""
         seen = enumerate(self._native.bodies())
-        return {name: SubstepBody(self._native, index, *rest) for index, (name, *rest) in seen}  # type: ignore[arg-type]
+        there = ((index, name, rest) for index, (name, *rest) in seen if name)
+        return {name: SubstepBody(self._native, index, *rest) for index, name, rest in there}  # type: ignore[arg-type]
 
     def add_acceleration(self, acceleration: npt.ArrayLike) -> None:
         """Adds an acceleration [m/s^2] for this substep: shape (N, 2), or one vector for all.

@@ -103,7 +103,8 @@ impl ShapeMatching {
         let (place, start) = (self.places[a.0][a.1], wide(now.particles.starts()[row]));
         for hit in now.walls.touches(vector(place), super::radius(self.spacing)) {
             let (normal, depth) = (wide(hit.normal), f64::from(hit.depth));
-            let surface = self.members[a.0].surface.combined(&Surface::with_friction(f64::from(hit.friction)), self.rule);
+            let surface =
+                self.members[a.0].surface.combined(&Surface::with_friction(f64::from(hit.friction)), self.rule);
             let old = depth + (place - start).dot(normal);
             touches.push(Touch { wall: hit.measured, ..Touch::new((a, None), normal, old, surface) });
         }

@@ -124,8 +124,9 @@ impl Block {
     /// The impulse that keeps the free coordinate in its range: none within it.
     fn stop(&self, range: Limits, motion: &(Twist, Twist), masses: &(InverseMass, InverseMass)) -> f64 {
         let weight = self.weight(masses);
+        // Nothing moves sleeping bodies: the joint carries what it carried.
         if weight <= 0.0 {
-            return 0.0;
+            return self.limit;
         }
         let moved = self.moved(motion, masses);
         let (down, up) = ((self.value - range.least).max(0.0), (range.most - self.value).max(0.0));
@@ -147,12 +148,7 @@ impl Block {
     }
 
     /// The impulses that end all motion against the block.
-    fn hold(
-        &mut self,
-        motion: &(Twist, Twist),
-        masses: &(InverseMass, InverseMass),
-        pushes: &mut (Twist, Twist),
-    ) {
+    fn hold(&mut self, motion: &(Twist, Twist), masses: &(InverseMass, InverseMass), pushes: &mut (Twist, Twist)) {
         let rows = &self.rows[..self.count];
         let apart: [f64; 3] = std::array::from_fn(|k| rows.get(k).map_or(0.0, |row| -row.moved(&motion.0, &motion.1)));
         let added = solve(rows, &apart, masses);
@@ -164,12 +160,7 @@ impl Block {
     }
 
     /// Position-only pushes that remove half of the drift at these poses.
-    pub fn separate(
-        &self,
-        joint: &Joint,
-        poses: (Pose, Pose),
-        masses: &(InverseMass, InverseMass),
-    ) -> (Twist, Twist) {
+    pub fn separate(&self, joint: &Joint, poses: (Pose, Pose), masses: &(InverseMass, InverseMass)) -> (Twist, Twist) {
         let arm = |pose: Pose, anchor: Vector64| Vector64::from_angle(pose.angle).rotate(anchor);
         let arms = (arm(poses.0, joint.anchor), arm(poses.1, joint.other_anchor));
         let offset = (poses.0.position + arms.0) - (poses.1.position + arms.1);
@@ -187,9 +178,8 @@ impl Block {
             if beyond != 0.0 && weight > 0.0 {
                 push(&block.free, -0.5 * beyond / weight, &mut motion, masses, &mut pushes);
                 let rows = &block.rows[..block.count];
-                let back: [f64; 3] = std::array::from_fn(|k| {
-                    rows.get(k).map_or(0.0, |row| wanted[k] - row.moved(&motion.0, &motion.1))
-                });
+                let back: [f64; 3] =
+                    std::array::from_fn(|k| rows.get(k).map_or(0.0, |row| wanted[k] - row.moved(&motion.0, &motion.1)));
                 for (row, impulse) in rows.iter().zip(solve(rows, &back, masses)) {
                     push(row, impulse, &mut motion, masses, &mut pushes);
                 }

@@ -1,8 +1,8 @@
 //! The joints of a run: added, changed, carried, broken and taken away.
 
+use super::Contacts;
 use super::joint::{Joint, JointKind, JointState, Strength};
 use super::linked::{Linked, Status};
-use super::Contacts;
 use crate::math::Vector64;
 use crate::rigid::Bodies;
 

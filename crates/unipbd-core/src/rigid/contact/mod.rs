@@ -170,7 +170,6 @@ impl Contacts {
         self.jacobi.parallelism = parallelism;
     }
 
-
     /// Finds the contacts at the start of a substep and wakes the bodies that are touched.
     pub fn begin_substep(&mut self, bodies: &mut Bodies, dt: f64, gravity: Vector64) {
         // Impulses are forces times dt^2: the same force has a larger impulse in a longer substep.
@@ -351,7 +350,9 @@ impl Contacts {
 
     /// Pairs of bodies that act on each other through contacts or joints.
     pub(crate) fn linked(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
-        self.pressed().chain(self.joints.iter().filter(|linked| linked.is_live()).map(Linked::bodies)).filter(|&(_, b)| b != NONE)
+        self.pressed()
+            .chain(self.joints.iter().filter(|linked| linked.is_live()).map(Linked::bodies))
+            .filter(|&(_, b)| b != NONE)
     }
 
     /// The bodies of the contacts that carry a load.
@@ -395,7 +396,6 @@ impl Contacts {
         let rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches());
         rows.flat_map(move |(contact, cache)| (0..contact.points().len()).map(move |k| read(contact, cache, k)))
     }
-
 }
 
 fn in_turn() -> Arc<dyn ContactSolver> {

@@ -1,7 +1,7 @@
 //! Contacts and joints from a saved state: what the scene decides is kept from the run, what a run changes is checked.
 
-use super::{Contacts, Islands, Jacobi, JointKind, Limits, Linked};
 use super::joint_set::apart;
+use super::{Contacts, Islands, Jacobi, JointKind, Limits, Linked};
 use crate::rigid::Bodies;
 
 impl Contacts {

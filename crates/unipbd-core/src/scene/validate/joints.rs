@@ -3,7 +3,7 @@
 use std::collections::HashSet;
 
 use super::checker::{Allowed, Checker, entries};
-use super::names::{HINTED, excerpt, hint_for_unknown};
+use super::names::{HINTED, check_unique, excerpt, hint_for_unknown};
 use crate::scene::{JointDescription, JointRule, KeyPath, Scene};
 
 /// The names of all bodies.
@@ -23,6 +23,9 @@ impl BodyNames {
 
 pub(super) fn check(checker: &mut Checker) {
     let names = BodyNames::of(checker.scene);
+    let scene = checker.scene;
+    let named = entries("joint", &scene.joint).map(|(path, joint)| (path, joint.name.as_str()));
+    check_unique(checker, "joints", named);
     for (path, joint) in entries("joint", &checker.scene.joint) {
         check_body(checker, path.then("body"), &joint.body, &names);
         if let Some(other) = &joint.other {
@@ -60,7 +63,12 @@ fn check_values(checker: &mut Checker, path: &KeyPath, joint: &JointDescription)
     checker.range(path.then("length"), joint.length, Allowed::Positive, "in metres; left out, as the scene starts");
     checker.range(path.then("ratio"), joint.ratio, Allowed::Positive, "1 for a single rope");
     checker.range(path.then("break_force"), joint.break_force, Allowed::Positive, "in N; left out, it never breaks");
-    checker.range(path.then("break_torque"), joint.break_torque, Allowed::Positive, "in N m; left out, it never breaks");
+    checker.range(
+        path.then("break_torque"),
+        joint.break_torque,
+        Allowed::Positive,
+        "in N m; left out, it never breaks",
+    );
     for (key, limits) in [("limits_deg", joint.limits_deg), ("limits", joint.limits)] {
         if limits.is_some_and(|[least, most]| least > most) {
             checker.problem(path.then(key), "must be the smaller value, then the larger", "swap the two");
@@ -69,9 +77,9 @@ fn check_values(checker: &mut Checker, path: &KeyPath, joint: &JointDescription)
     check_kind(checker, path, joint);
 }
 
-/// Keys that only some kinds of joints have: kinds, a word for them, keys with whether they are given.
+/// Keys that only some kinds of joints have, and keys that they need.
 fn check_kind(checker: &mut Checker, path: &KeyPath, joint: &JointDescription) {
-    use JointRule::{Hinge, Pulley, Rod, Rope, Slider, Weld};
+    use JointRule::{Hinge, Pulley, Rod, Rope, Slider};
     let apart = joint.other_at.is_some_and(|other| other != joint.at);
     let owners: [(&[JointRule], &str, &str, bool); 12] = [
         (&[Rod, Rope, Pulley], "rod, rope or pulley", "length", joint.length.is_some()),
@@ -92,9 +100,6 @@ fn check_kind(checker: &mut Checker, path: &KeyPath, joint: &JointDescription) {
             let message = format!("only a {names} has `{key}`");
             checker.problem(path.then(key), message, format!("leave it out, or make the joint a {names}"));
         }
-    }
-    if joint.kind == Weld && joint.compliance != 0.0 {
-        return;
     }
     if joint.damping != 0.0 && joint.compliance == 0.0 && matches!(joint.kind, Rod | Rope) {
         let hint = "give a compliance [m/N]: a damper acts beside a spring";

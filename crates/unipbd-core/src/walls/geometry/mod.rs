@@ -256,7 +256,7 @@ impl Walls {
                     point: vector(point),
                     normal: vector(normal),
                     friction: real(tank.friction.unwrap_or(0.0)),
-            body_friction: real(body_friction(tank.friction)),
+                    body_friction: real(body_friction(tank.friction)),
                     slip: tank.slip,
                     velocity: Vector::ZERO,
                     measured: numbers[side as usize],
