@@ -1,6 +1,6 @@
 //! Changes of bodies while a run goes on: properties, place, removal.
 
-use super::body_set::Derived;
+use super::derived::Derived;
 use super::{Bodies, BodyKind, BodySpec, InverseMass, MassSpec, Pose, Rotation, Twist};
 use crate::math::Vector64;
 use crate::shapes::Shape;

@@ -3,6 +3,7 @@
 mod body_set;
 mod change;
 pub mod contact;
+mod derived;
 mod describe;
 mod motion;
 mod query;
@@ -11,8 +12,9 @@ mod specification;
 mod wall;
 
 pub use crate::scene::BodyKind;
-pub use body_set::{Bodies, InverseMass};
+pub use body_set::Bodies;
 pub use change::BodyChange;
+pub use derived::InverseMass;
 pub(crate) use describe::{joint, specification, strength};
 pub use motion::{Motion, Repeat, Waypoint};
 pub(crate) use query::{Outline, rectangle as box_outline};
