@@ -2,6 +2,7 @@
 
 mod body_set;
 pub mod contact;
+mod mobility;
 mod motion;
 mod saved;
 mod specification;
@@ -9,6 +10,7 @@ mod wall;
 
 pub use crate::scene::BodyKind;
 pub use body_set::{Bodies, InverseMass};
+pub(crate) use mobility::{HeldRow, Mobilities};
 pub use motion::{Motion, Repeat, Waypoint};
 pub use specification::{BodySpec, CollisionFilter, Elasticity, MassSpec, Rotation, Surface};
 pub use wall::{Boundary, Wall};

@@ -80,9 +80,8 @@ impl World {
     fn project_on_grid(&mut self) {
         let parts = &mut self.parts;
         let Some(grid) = &mut parts.pressure_grid else { return };
-        let hinged = parts.rigid.as_ref().map(RigidBodies::hinged).unwrap_or_default();
         let mut immersed = parts.rigid.as_mut().map(RigidBodies::immersed);
-        let bodies = immersed.as_mut().map(|(bodies, counts)| Immersed { bodies, counts, hinged: &hinged });
+        let bodies = immersed.as_mut().map(|(bodies, mobilities, counts)| Immersed { bodies, counts, mobilities });
         grid.project(&mut parts.particles, (&parts.walls, bodies), self.clock.dt, parts.parallelism);
     }
 
@@ -106,6 +105,9 @@ impl World {
         let Some(rigid) = &mut parts.rigid else { return };
         rigid.contacts.run_on(parts.parallelism);
         rigid.predict(self.clock.dt, self.clock.time, wide(parts.gravity));
+        if parts.pressure_grid.is_some() {
+            rigid.find_mobilities();
+        }
         rigid.iterate_contacts();
     }
 
