@@ -72,6 +72,7 @@ impl World {
     }
 
     fn predict(&mut self) {
+        self.measure_push();
         let parts = &mut self.parts;
         integrate::predict(&mut parts.particles, &parts.forces, self.clock.dt as Real, parts.parallelism);
         parts.particles.clear_accelerations();
