@@ -1,8 +1,8 @@
 //! Water in tanks: dx = 0.1 m, g = 9.81 m/s^2, 60 frames/s.
 
-use unipbd_core::Solver;
 use unipbd_core::scene::{GradientPoint, Scene, Substeps};
-use unipbd_tests::{Spread, bars, build, full_size, run, scene, shipped};
+use unipbd_core::{Solver, SolverError, SubstepView, Vector};
+use unipbd_tests::{Spread, bars, build, full_size, mean_of, run, scene, shipped};
 
 fn energy(solver: &Solver) -> f64 {
     let diagnostics = solver.diagnostics();
@@ -143,4 +143,54 @@ fn twice_the_substeps_cut_the_compression_to_a_third() {
     };
     let (few, many) = (compression(8), compression(16));
     bars("column 30 deep, n = 8 and 16", |bars| bars.at_least("ratio of C_max", few / many, 3.0));
+}
+
+/// Runs with an acceleration by a hook; returns the mean height or radius at the end over that at the start, the largest
+/// gain of energy over the start's, and the worst mean compression.
+fn under_a_hook(scene: &Scene, acceleration: impl Fn(Vector) -> Vector, potential: impl Fn(Vector) -> f64) -> [f64; 3] {
+    let mut solver = build(scene, 2);
+    let energy = |solver: &Solver| -> f64 {
+        let motion = solver.velocities().iter().map(|v| 0.5 * f64::from(v.length_squared()));
+        motion.sum::<f64>() + solver.positions().iter().map(|x| potential(*x)).sum::<f64>()
+    };
+    let size = |solver: &Solver| mean_of(solver.positions().iter().map(|x| potential(*x)));
+    let (start, first) = (energy(&solver), size(&solver));
+    let (mut gain, mut compression) = (0.0_f64, 0.0_f64);
+    for _ in 0..120 {
+        let hook = |view: &mut SubstepView<'_>| {
+            for row in 0..view.positions().len() {
+                let a = acceleration(view.positions()[row]);
+                view.add_acceleration(row, a);
+            }
+            Ok::<(), SolverError>(())
+        };
+        solver.step_frame_with(hook).expect("the scene is calm");
+        gain = gain.max(energy(&solver) / start - 1.0);
+        compression = compression.max(solver.diagnostics().density_error_mean);
+    }
+    [size(&solver) / first, gain, compression]
+}
+
+#[test]
+fn a_liquid_is_held_against_the_pull_of_a_hook_as_against_gravity() {
+    for grid in ["off", "on"] {
+        let common = format!("spacing = 0.04\ngravity = [0.0, 0.0]\nsolver.pressure_grid = \"{grid}\"");
+        let column = scene(&format!(
+            "{common}\n[[liquid]]\nname = \"water\"\n[[block]]\nmaterial = \"water\"\nmin = [0.0, 0.0]\nmax = [1.0, 2.0]\n\
+             [[tank]]\nmin = [0.0, 0.0]\nmax = [1.0, 4.0]"
+        ));
+        let drop = scene(&format!(
+            "{common}\n[[liquid]]\nname = \"water\"\n[[disc]]\nmaterial = \"water\"\ncenter = [0.0, 0.0]\nradius = 1.0"
+        ));
+        let down = under_a_hook(&column, |_| Vector::new(0.0, -9.81), |x| 9.81 * f64::from(x.y));
+        let inwards = under_a_hook(&drop, |x| x * -25.0, |x| 12.5 * f64::from(x.length_squared()));
+        bars("water pulled by a hook, 2 s", |bars| {
+            for (name, [size, gain, compression]) in [("down", down), ("towards a centre", inwards)] {
+                let of = |what: &str| format!("{what}, pulled {name}, grid {grid}");
+                bars.within(&of("height or square of the radius at the end over the start"), size, 0.98, 1.01);
+                bars.at_most(&of("energy gained"), gain, 0.02);
+                bars.at_most(&of("mean C"), compression, 0.015);
+            }
+        });
+    }
 }

@@ -366,3 +366,46 @@ fn gas_liquid_and_bodies_give_the_same_bits_on_any_number_of_threads_and_after_a
     run(&mut three, 10, |_| ());
     assert_eq!(one.state_hash(), three.state_hash());
 }
+
+/// The worst of two seconds of a tank of water 2.5 m deep with these bodies: speed of the water [dx/s], its mean
+/// compression, and how far a body moves [dx].
+fn worst_beside(bodies: &str) -> [f64; 3] {
+    let dx = 0.05;
+    let rest = format!("[[tank]]\nmin = [0.0, 0.0]\nmax = [3.0, 4.0]\n{bodies}");
+    let mut solver = build(&water(3.0, 2.5, dx, &rest), 2);
+    let start: Vec<_> = solver.bodies().iter().map(|body| body.position).collect();
+    let (mut speed, mut compression, mut moved) = (0.0_f64, 0.0_f64, 0.0_f64);
+    run(&mut solver, 120, |solver| {
+        let water: Vec<_> = of_phase(solver, Phase::Liquid).collect();
+        let square = mean_of(water.iter().map(|&row| f64::from(solver.velocities()[row].length_squared())));
+        speed = speed.max(square.sqrt() / dx);
+        compression = compression.max(solver.diagnostics().density_error_mean);
+        let ways = solver.bodies().iter().zip(&start).map(|(body, start)| (body.position - *start).length() / dx);
+        moved = ways.fold(moved, f64::max);
+    });
+    [speed, compression, moved]
+}
+
+#[test]
+fn bodies_that_deep_water_presses_on_supports_rest() {
+    let body = |size: [f64; 2], position: [f64; 2], density: f64, rest: &str| {
+        format!("[[body]]\nsize = {size:?}\nposition = {position:?}\ndensity = {density:?}\n{rest}\n")
+    };
+    let disc = "[[body]]\nradius = 0.3\nposition = [1.5, 0.3]\ndensity = 1500.0\n".to_string();
+    let heap = [0.3, 0.9, 1.5].map(|y| body([0.6, 0.6], [1.5, y], 1200.0, "")).concat();
+    let shelf = body([1.0, 0.2], [0.5, 1.0], 1.0, "kind = \"static\"") + &body([0.6, 0.4], [0.4, 1.3], 1300.0, "");
+    for (name, bodies) in [
+        ("box flush on the floor", body([0.6, 0.6], [1.5, 0.3], 1500.0, "")),
+        ("disc on the floor", disc),
+        ("stack of three", heap),
+        ("box in a corner", body([0.6, 0.6], [0.3, 0.3], 1100.0, "")),
+        ("box on a shelf", shelf),
+    ] {
+        let [speed, compression, moved] = worst_beside(&bodies);
+        bars("bodies on supports under 2.5 m of water", |bars| {
+            bars.at_most(&format!("{name}: speed of the water [dx/s]"), speed, 1.0);
+            bars.at_most(&format!("{name}: mean compression"), compression, 0.005);
+            bars.at_most(&format!("{name}: way of a body [dx]"), moved, 0.1);
+        });
+    }
+}

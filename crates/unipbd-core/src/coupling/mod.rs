@@ -10,7 +10,7 @@ mod soft_bodies;
 use crate::math::{Real, Vector, Vector64, vector, wide};
 use crate::particles::Particles;
 use crate::rigid::contact::{Contacts, Joint, JointKind};
-use crate::rigid::{Bodies, Body};
+use crate::rigid::{Bodies, Body, HeldRow, Mobilities};
 use crate::rows::RowIndex;
 use push_out::Penetration;
 
@@ -37,6 +37,9 @@ pub struct RigidBodies {
     carried: Vec<Carried>,
     /// Bodies that are particles, drawn back to their shapes.
     matched: Vec<soft_bodies::Matched>,
+    /// How bodies answer to the pressure of a grid.
+    #[serde(skip)]
+    mobilities: Mobilities,
 }
 
 /// A point that moves with a body.
@@ -84,6 +87,7 @@ impl RigidBodies {
             tied: Vec::new(),
             carried: Vec::new(),
             matched: Vec::new(),
+            mobilities: Mobilities::default(),
         };
         rigid.list_matched(spacing);
         rigid
@@ -141,26 +145,43 @@ impl RigidBodies {
         self.contacts.iterate(&mut self.bodies);
     }
 
-    /// The bodies that turn about a hinge in the world or on an immovable body, and the way from their centre of mass to
-    /// it [m].
-    pub(crate) fn hinged(&self) -> Vec<(u32, Vector64)> {
-        let fixed = |id: Option<u32>| id.is_none_or(|id| !self.bodies.is_dynamic(id as usize));
-        let arm = |body: u32, anchor: Vector64| Vector64::from_angle(self.bodies.pose(body).angle).rotate(anchor);
-        let hinges = self.contacts.joint_loads().map(|(joint, ..)| joint);
-        let of_joint = |joint: Joint| match (joint.kind, joint.other) {
-            (JointKind::Hinge { .. }, other) if fixed(other) => Some((joint.body, arm(joint.body, joint.anchor))),
-            (JointKind::Hinge { .. }, Some(other)) if fixed(Some(joint.body)) => {
-                Some((other, arm(other, joint.other_anchor)))
-            }
-            _ => None,
-        };
-        hinges.filter_map(of_joint).collect()
+    /// Finds how each body answers to a load. Contacts hold where they were pressed in the last substep: call it before
+    /// they are solved again.
+    pub(crate) fn find_mobilities(&mut self) {
+        let mut mobilities = std::mem::take(&mut self.mobilities);
+        let hinges = self.contacts.joint_loads().map(|(joint, ..)| joint).flat_map(|joint| self.hinge_rows(joint));
+        mobilities.find(self.bodies.inverse_masses(), self.contacts.held_rows().chain(hinges));
+        self.mobilities = mobilities;
     }
 
-    /// The bodies to be pushed by a fluid, and whether a body has samples that the fluid meets.
-    pub(crate) fn immersed(&mut self) -> (&mut Bodies, impl Fn(u32) -> bool) {
+    /// The rows in which hinges, welds and sliders hold two bodies; none for other joints.
+    fn hinge_rows(&self, joint: Joint) -> impl Iterator<Item = HeldRow> {
+        let pose = |body: u32| self.bodies.pose(body);
+        let on = |body: u32, anchor: Vector64, sign: f64, axis: Vector64, turn: f64| {
+            let arm = Vector64::from_angle(pose(body).angle).rotate(anchor);
+            (body, [sign * axis.x, sign * axis.y, sign * (arm.perp_dot(axis) + turn)])
+        };
+        let (x, y, none) = ((Vector64::X, 0.0), (Vector64::Y, 0.0), Vector64::ZERO);
+        let rows: Vec<(Vector64, f64)> = match joint.kind {
+            JointKind::Hinge { .. } => vec![x, y],
+            JointKind::Weld { .. } => vec![x, y, (none, 1.0)],
+            JointKind::Slider { axis, .. } => {
+                let along = Vector64::from_angle(joint.other.map_or(0.0, |other| pose(other).angle)).rotate(axis);
+                vec![(along.perp(), 0.0), (none, 1.0)]
+            }
+            _ => Vec::new(),
+        };
+        rows.into_iter().map(move |(axis, turn)| {
+            let other = joint.other.map(|other| on(other, joint.other_anchor, -1.0, axis, turn));
+            HeldRow { sides: [on(joint.body, joint.anchor, 1.0, axis, turn), other.unwrap_or(HeldRow::WORLD)] }
+        })
+    }
+
+    /// The bodies to be pushed by a fluid, their mobilities, and whether a body has samples that the fluid meets.
+    pub(crate) fn immersed(&mut self) -> (&mut Bodies, &Mobilities, impl Fn(u32) -> bool) {
         let ids = &self.sample_ids;
-        (&mut self.bodies, move |body: u32| ids[body as usize].0 < ids[body as usize].1)
+        let counts = move |body: u32| ids[body as usize].0 < ids[body as usize].1;
+        (&mut self.bodies, &self.mobilities, counts)
     }
 
     /// Puts the samples where the bodies are predicted to be.

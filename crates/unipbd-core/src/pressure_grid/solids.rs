@@ -7,7 +7,7 @@ use super::chords::Outline;
 use super::lattice::Lattice;
 use crate::bytes::held;
 use crate::math::{Real, Vector64};
-use crate::rigid::{Bodies, InverseMass, Twist};
+use crate::rigid::{Bodies, Mobilities, Twist};
 
 /// A face covered to more than this part is covered wholly.
 const WHOLE: f64 = 0.97;
@@ -41,8 +41,8 @@ pub(super) struct Solid {
     response: [[f64; 3]; 3],
     /// Predicted velocity [m/s], [rad/s].
     velocity: [f64; 3],
-    /// Mass of a cell of the heaviest fluid over that of a cell of the body; 0 for an immovable one.
-    pub lightness: Real,
+    /// Mass of a cell of the heaviest fluid over that of a cell of the body, along each axis; 0 where it cannot move.
+    pub lightness: [Real; 2],
 }
 
 /// The bodies that a fluid meets.
@@ -50,8 +50,7 @@ pub(crate) struct Immersed<'a> {
     pub bodies: &'a mut Bodies,
     /// Whether a body is among the particles.
     pub counts: &'a dyn Fn(u32) -> bool,
-    /// Bodies that turn about a fixed hinge, and the way from their centre of mass to it [m].
-    pub hinged: &'a [(u32, Vector64)],
+    pub mobilities: &'a Mobilities,
 }
 
 /// All bodies on the grid.
@@ -82,7 +81,7 @@ impl Solids {
     pub fn find(&mut self, lattice: &Lattice, immersed: &Immersed<'_>, units: Units) {
         self.solids.clear();
         self.faces.clear();
-        let Immersed { bodies, counts, hinged } = immersed;
+        let Immersed { bodies, counts, mobilities } = immersed;
         let rigid = |&body: &u32| counts(body) && bodies.elasticity(body as usize).is_none();
         for body in (0..bodies.len() as u32).filter(rigid) {
             let first = self.faces.len();
@@ -90,22 +89,18 @@ impl Solids {
             if self.faces.len() == first {
                 continue;
             }
-            let (view, response) = (&bodies.views()[body as usize], bodies.response(body));
+            let (view, mobility) = (&bodies.views()[body as usize], mobilities.of(body));
             let moved = bodies.displacement_at(body, Vector64::ZERO);
             let turned = bodies.displacement_at(body, Vector64::X).y - moved.y;
             let velocity = [moved.x, moved.y, turned].map(|moved| moved / units.dt);
-            let movable = response != InverseMass::default();
             let area = view.sample_area * view.samples.len() as f64;
             let lightness = units.cell_mass * area / (view.mass * f64::from(lattice.cell * lattice.cell));
             self.solids.push(Solid {
                 body,
                 faces: first..self.faces.len(),
-                response: match hinged.iter().find(|(hinged, _)| *hinged == body) {
-                    Some((_, arm)) => about(response, *arm, units.cell_mass),
-                    None => scaled(response, units.cell_mass),
-                },
+                response: mobility.map(|row| row.map(|entry| entry * units.cell_mass)),
                 velocity,
-                lightness: if movable { lightness as Real } else { 0.0 },
+                lightness: [0, 1].map(|axis| (lightness * view.mass * mobility[axis][axis]) as Real),
             });
         }
     }
@@ -171,7 +166,7 @@ impl Solids {
 
     /// Adds the outflow of each cell by the response of the bodies to a pressure [m/s].
     pub fn respond(&self, pressure: &[Real], out: &mut [Real], stride: usize, counts: impl Fn(usize) -> bool) {
-        for solid in self.solids.iter().filter(|solid| solid.lightness > 0.0) {
+        for solid in self.solids.iter().filter(|solid| solid.response != [[0.0; 3]; 3]) {
             let change = self.change(solid, pressure, stride);
             self.push_through(solid, change, 1.0, stride, (&counts, out));
         }
@@ -235,22 +230,6 @@ impl Covered {
 fn within(low: f64, high: f64, most: usize) -> std::ops::Range<usize> {
     let number = |at: f64| at.clamp(0.0, most as f64) as usize;
     number(low)..number(high)
-}
-
-fn scaled(response: InverseMass, mass: f64) -> [[f64; 3]; 3] {
-    let (linear, angular) = (response.linear * mass, response.angular * mass);
-    [[linear, 0.0, 0.0], [0.0, linear, 0.0], [0.0, 0.0, angular]]
-}
-
-/// The response of a body that turns about a fixed hinge at `arm` from its centre of mass.
-fn about(response: InverseMass, arm: Vector64, mass: f64) -> [[f64; 3]; 3] {
-    if response.linear == 0.0 || response.angular == 0.0 {
-        return [[0.0; 3]; 3];
-    }
-    // The velocity at the hinge is zero: v = omega (arm.y, -arm.x).
-    let way = [arm.y, -arm.x, 1.0];
-    let inertia = arm.length_squared() / response.linear + 1.0 / response.angular;
-    way.map(|a| way.map(|b| a * b * mass / inertia))
 }
 
 /// A force and a torque, or a displacement, as a twist.

@@ -183,7 +183,7 @@ impl System {
         for solid in &solids.solids {
             for face in solids.faces_of(solid) {
                 let (here, back) = (face.cell as usize, face.back(stride));
-                let coupling = face.open * solid.lightness;
+                let coupling = face.open * solid.lightness[usize::from(face.axis)];
                 match (self.depth[back] >= 0.0, self.depth[here] >= 0.0) {
                     (true, true) if face.axis == 0 => out.right[back] += coupling,
                     (true, true) => out.upper[back] += coupling,

@@ -150,6 +150,11 @@ impl Bodies {
         self.inverse_masses[id as usize]
     }
 
+    /// The inverse masses of all bodies.
+    pub(crate) fn inverse_masses(&self) -> &[InverseMass] {
+        &self.inverse_masses
+    }
+
     /// Whether a body is asleep.
     pub fn is_asleep(&self, id: u32) -> bool {
         self.asleep[id as usize]

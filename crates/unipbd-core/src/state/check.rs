@@ -30,6 +30,9 @@ impl State {
         if ![clock.frame, clock.step, clock.generation].into_iter().all(|count| count < MOST_STEPS) {
             return Err(damaged("its clock has counted too far"));
         }
+        if !(clock.push.mean.is_finite() && clock.push.spread >= 0.0 && clock.push.spread.is_finite()) {
+            return Err(damaged("the acceleration by its hooks is not finite"));
+        }
         if !(0.0..=1.0).contains(&clock.stiffness) {
             return Err(damaged("the stiffness of its fluids is not between 0 and 1"));
         }

@@ -3,10 +3,11 @@
 use super::error::damaged;
 use super::{Section, State, StateError};
 use crate::bytes::{Damage, Reader, Writer};
+use crate::math::Vector64;
 use crate::neighbors::SavedList;
 use crate::particles::Particles;
 use crate::rng::mix;
-use crate::step::Clock;
+use crate::step::{Clock, Push};
 
 const MAGIC: &[u8; 8] = b"unipbd\0S";
 /// Version of the format; increased with every change of the contents.
@@ -78,6 +79,9 @@ fn write_clock(clock: &Clock, out: &mut Writer) {
     for value in [clock.time, clock.dt, clock.speed, clock.pressure_limit, clock.stiffness] {
         out.value(value);
     }
+    for value in [clock.push.mean.x, clock.push.mean.y, clock.push.spread] {
+        out.value(value);
+    }
 }
 
 fn read_clock(input: &mut Reader<'_>) -> Result<Clock, Damage> {
@@ -94,6 +98,7 @@ fn read_clock(input: &mut Reader<'_>) -> Result<Clock, Damage> {
         speed: input.value()?,
         pressure_limit: input.value()?,
         stiffness: input.value()?,
+        push: Push { mean: Vector64::new(input.value()?, input.value()?), spread: input.value()? },
     })
 }
 

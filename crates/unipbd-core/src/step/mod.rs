@@ -28,4 +28,4 @@ pub(crate) use stages::ABSURD_SPEED;
 pub use substeps::{Choice, Demand, SubstepRule};
 pub use threads::{MOST_THREADS, thread_count};
 pub use view::SubstepView;
-pub(crate) use world::{Clock, Parts, Population};
+pub(crate) use world::{Clock, Parts, Population, Push};

@@ -72,6 +72,7 @@ impl World {
     }
 
     fn predict(&mut self) {
+        self.measure_push();
         let parts = &mut self.parts;
         integrate::predict(&mut parts.particles, &parts.forces, self.clock.dt as Real, parts.parallelism);
         parts.particles.clear_accelerations();
@@ -80,9 +81,8 @@ impl World {
     fn project_on_grid(&mut self) {
         let parts = &mut self.parts;
         let Some(grid) = &mut parts.pressure_grid else { return };
-        let hinged = parts.rigid.as_ref().map(RigidBodies::hinged).unwrap_or_default();
         let mut immersed = parts.rigid.as_mut().map(RigidBodies::immersed);
-        let bodies = immersed.as_mut().map(|(bodies, counts)| Immersed { bodies, counts, hinged: &hinged });
+        let bodies = immersed.as_mut().map(|(bodies, mobilities, counts)| Immersed { bodies, counts, mobilities });
         grid.project(&mut parts.particles, (&parts.walls, bodies), self.clock.dt, parts.parallelism);
     }
 
@@ -107,6 +107,9 @@ impl World {
         rigid.contacts.run_on(parts.parallelism);
         rigid.carry_anchors(&parts.particles, &self.rows);
         rigid.predict(self.clock.dt, self.clock.time, wide(parts.gravity));
+        if parts.pressure_grid.is_some() {
+            rigid.find_mobilities();
+        }
         rigid.iterate_contacts();
     }
 

@@ -89,8 +89,24 @@ pub(crate) struct Clock {
     pub capped: bool,
     /// Fastest dense particle after the last substep [m/s].
     pub speed: f64,
+    /// Acceleration by hooks in the last substep.
+    pub push: Push,
     /// Advances whenever particles are added or removed.
     pub generation: u64,
+}
+
+/// Acceleration of the fluids by hooks: its mean, and the root mean square of the rest [m/s^2].
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Push {
+    pub mean: Vector64,
+    pub spread: f64,
+}
+
+impl Push {
+    /// The root mean square of the whole [m/s^2].
+    pub fn size(&self) -> f64 {
+        self.mean.length().hypot(self.spread)
+    }
 }
 
 /// State at the start of a frame.

@@ -62,10 +62,10 @@ pub(crate) use union_find::UnionFind;
 use crate::math::Vector64;
 use crate::parallel::Parallelism;
 use crate::rigid::Wall;
-use crate::rigid::{Bodies, InverseMass, Twist};
+use crate::rigid::{Bodies, HeldRow, InverseMass, Twist};
 use crate::scene::ContactMethod;
 use bounds::NONE;
-use contact_cache::ContactCache;
+use contact_cache::{ContactCache, Point};
 use contact_set::StepContext;
 use islands::Islands;
 use jacobi::Jacobi;
@@ -319,6 +319,16 @@ impl Contacts {
     /// The bodies of the contacts that carry a load.
     pub(crate) fn pressed(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
         self.narrow_phase.contacts().iter().filter(|contact| contact.is_pressed()).map(|contact| (contact.a, contact.b))
+    }
+
+    /// The rows of the contacts that carry a load.
+    pub(crate) fn held_rows(&self) -> impl Iterator<Item = HeldRow> + '_ {
+        self.narrow_phase.contacts().iter().flat_map(|contact| {
+            let (n, pressed) = (contact.normal, |point: &&Point| point.normal_impulse > 0.0);
+            contact.points().iter().filter(pressed).map(move |point| HeldRow {
+                sides: [(contact.a, [n.x, n.y, point.normal_a]), (contact.b, [-n.x, -n.y, -point.normal_b])],
+            })
+        })
     }
 
     /// Whether no substep has been taken.

@@ -3,10 +3,11 @@
 use super::controller::Demand;
 use super::statistics::FluidStatistics;
 use crate::coupling::RigidBodies;
-use crate::math::{Vector, wide};
+use crate::math::{Vector, Vector64, vector, wide};
 use crate::observe::{Event, Severity};
 use crate::phase::Phase;
-use crate::step::world::World;
+use crate::step::world::{Push, World};
+use std::ops::Range;
 
 /// Limit of the pressure, relative to the pressure expected from depth and speed.
 const PRESSURE_MARGIN: f64 = 8.0;
@@ -71,9 +72,42 @@ impl World {
         f64::from(square.max(0.0)).sqrt()
     }
 
-    /// Direction of gravity; zero without gravity.
+    /// Measures the acceleration by hooks, which the number of substeps and the limit of the pressure follow.
+    pub(in crate::step) fn measure_push(&mut self) {
+        let particles = &self.parts.particles;
+        if particles.acceleration.is_empty() {
+            self.clock.push = Push::default();
+            return;
+        }
+        let of_row = |row: usize| {
+            let a = if particles.phase[row].is_fluid() { wide(particles.acceleration[row]) } else { return [0.0; 4] };
+            [1.0, a.x, a.y, a.length_squared()]
+        };
+        let add = |a: [f64; 4], b: [f64; 4]| std::array::from_fn(|k| a[k] + b[k]);
+        let sum_of = |rows: Range<usize>| rows.map(of_row).fold([0.0; 4], add);
+        let [count, x, y, square] = self.parts.parallelism.reduce(particles.dense(), sum_of, add);
+        let count = count.max(1.0);
+        let mean = Vector64::new(x, y) / count;
+        let push = Push { mean, spread: (square / count - mean.length_squared()).max(0.0).sqrt() };
+        // The first substep of a frame may be the first with this hook.
+        let grown = push.size() > self.clock.push.size();
+        self.clock.push = push;
+        if grown {
+            self.clock.pressure_limit = self.pressure_limit().max(self.clock.pressure_limit);
+        }
+    }
+
+    /// Mean acceleration of the fluids by gravity and hooks [m/s^2].
+    fn pull(&self) -> Vector64 {
+        wide(self.parts.gravity) + self.clock.push.mean
+    }
+
+    /// Direction of gravity and hooks; zero without either.
     fn down(&self) -> Vector {
-        self.parts.gravity.normalize_or_zero()
+        if self.clock.push == Push::default() {
+            return self.parts.gravity.normalize_or_zero();
+        }
+        vector(self.pull().normalize_or_zero())
     }
 
     fn has_gas(&self) -> bool {
@@ -82,8 +116,18 @@ impl World {
 
     /// Pressure over density at the bottom of the surveyed particles, from their extent along gravity [m^2/s^2].
     fn depth_pressure(&self, of: FluidStatistics) -> f64 {
+        if self.clock.push != Push::default() {
+            return self.pushed_pressure(of) * self.density_ratio();
+        }
         let (gravity, depth) = (f64::from(self.parts.gravity.length()), of.depth());
         if gravity > 0.0 && depth.is_finite() { gravity * depth * self.density_ratio() } else { 0.0 }
+    }
+
+    /// The same with hooks: what they have in common presses along the whole depth, the rest from all sides.
+    fn pushed_pressure(&self, of: FluidStatistics) -> f64 {
+        let half = 0.5 * self.extent().into_iter().fold(0.0, f64::max);
+        let depth = if of.depth().is_finite() { of.depth() } else { 0.0 };
+        self.pull().length() * depth + self.clock.push.spread * half
     }
 
     /// Width and depth of the liquids, across gravity and along it [m]; 0 without either.
