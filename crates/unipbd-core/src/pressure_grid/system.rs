@@ -168,9 +168,16 @@ impl System {
         }
     }
 
-    /// Finds the cells inside bodies from the couplings of the fluid, and couples the cells a body covers as if it were
-    /// fluid of its density: for the preconditioner.
-    pub fn mask(&mut self, solids: &Solids, stride: usize, fluid: &Couplings, out: &mut Couplings) {
+    /// Finds the cells inside bodies from the couplings of the fluid, and those at bodies in the air, which no fluid
+    /// reaches and whose pressure is zero; couples the cells a body covers as if it were fluid of its density: for the
+    /// preconditioner.
+    pub fn mask(
+        &mut self,
+        (solids, fields): (&Solids, &Fields),
+        stride: usize,
+        fluid: &Couplings,
+        out: &mut Couplings,
+    ) {
         self.masked.clear();
         if !solids.any() {
             return;
@@ -178,7 +185,9 @@ impl System {
         self.masked.resize(self.depth.len(), false);
         for &cell in &self.touched {
             let cell = cell as usize;
-            self.masked[cell] = self.depth[cell] >= 0.0 && fluid.total[cell] < MASKED;
+            let faces = [fields.left[cell], fields.left[cell + 1], fields.lower[cell], fields.lower[cell + stride]];
+            let dry = faces.iter().all(|[_, weight]| *weight == 0.0);
+            self.masked[cell] = self.depth[cell] >= 0.0 && (dry || fluid.total[cell] < MASKED);
         }
         for solid in &solids.solids {
             for face in solids.faces_of(solid) {
