@@ -47,6 +47,22 @@ logs() {
     "$python" tests/python/check_log.py "$out/open_gas.mcap" "$out/dam_break.mcap"
 }
 
+# What a release consists of, built here: archive of the command, crates, wheel and source distribution, checked.
+release() {
+    local python=target/python-tests/bin/python out=target/release-check
+    rm -rf "$out" && mkdir -p "$out" || return 1
+    scripts/archive.sh || return 1
+    cargo publish --dry-run --workspace --allow-dirty || return 1
+    "$python" -m pip install --quiet --disable-pip-version-check "maturin>=1.9,<2" "twine>=6" || return 1
+    "$python" -m maturin build --release --out "$out" -m crates/unipbd-py/Cargo.toml || return 1
+    "$python" -m maturin sdist --out "$out" -m crates/unipbd-py/Cargo.toml || return 1
+    "$python" -m twine check --strict "$out"/* || return 1
+    # What a reader does first: the wheel in an empty environment, the first tutorial, completions.
+    python3 -m venv "$out/empty" && "$out/empty/bin/pip" install --quiet --disable-pip-version-check "$out"/*.whl || return 1
+    "$out/empty/bin/python" tests/python/documents.py docs/tutorials/first_scene.md || return 1
+    bash -n <("$out/empty/bin/unipbd" completions bash)
+}
+
 # Miri, of the default toolchain or of nightly, over the passes in lanes.
 miri() {
     local toolchain
@@ -97,8 +113,10 @@ fi
 if command -v python3 >/dev/null; then
     part logs logs
     part "Python tests" python3 tests/python/run.py $full
+    part "documentation site" python3 docs/build.py
+    [ -z "$full" ] || part "release" release
 else
-    skip "logs and Python tests" "no python3 here"
+    skip "logs, Python tests and documentation site" "no python3 here"
 fi
 command -v ffmpeg >/dev/null || skip "MP4 by a real ffmpeg" "no ffmpeg here"
 

@@ -12,6 +12,7 @@ trap 'rm -r "$work"' EXIT
 moments() {
     case $1 in
         dam_break) echo 0.6 1.4 ;;
+        dam_break_bodies) echo 0.8 2.2 ;;
         dam_break_obstacle) echo 0.7 1.3 ;;
         rayleigh_taylor_*) echo 1.0 1.6 ;;
         two_liquids_side_by_side) echo 0.8 2.0 ;;

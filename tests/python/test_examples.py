@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import subprocess
 import sys
 from pathlib import Path
@@ -26,14 +25,6 @@ def test_example_runs(name: str, tmp_path: Path) -> None:
     assert run.stdout
     if name in WRITES and WRITES[name] != ".":
         assert (tmp_path / WRITES[name]).stat().st_size > 1000
-
-
-@pytest.mark.parametrize("readme", [ROOT / "README.md", EXAMPLES.parent / "README.md"], ids=["project", "package"])
-def test_the_code_of_the_readme_runs(readme: Path, tmp_path: Path) -> None:
-    (code,) = re.findall(r"```python\n(.*?)```", readme.read_text(encoding="utf-8"), re.DOTALL)
-    run = subprocess.run([sys.executable, "-c", code], cwd=tmp_path, capture_output=True, text=True, timeout=60)
-    assert run.returncode == 0, run.stderr
-    assert "compression" in run.stdout and (tmp_path / "dam.png").exists()
 
 
 def test_the_notebook_executes(tmp_path: Path) -> None:

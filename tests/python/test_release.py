@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import importlib.metadata
+import os
 import re
 import shutil
 import subprocess
@@ -40,6 +41,31 @@ def test_the_wheel_says_who_may_use_it_and_how() -> None:
     assert "cp310-abi3" in wheel.read_text()
 
 
+def test_the_address_is_that_of_the_workspace() -> None:
+    address = re.search(r'^repository = "(.*)"$', (ROOT / "Cargo.toml").read_text(), re.MULTILINE)
+    assert address
+    for path in ("CITATION.cff", "packaging/conda/recipe.yaml"):
+        addresses = set(re.findall(r"https://github\.com/[\w.-]+/[\w.-]+", (ROOT / path).read_text()))
+        assert addresses == {address[1]}, path
+    for manifest in ("core", "cli", "py"):
+        assert "repository.workspace = true" in (ROOT / f"crates/unipbd-{manifest}/Cargo.toml").read_text()
+
+
+def test_the_archive_of_the_command_is_complete(tmp_path: Path) -> None:
+    if sys.platform == "win32" or shutil.which("rustc") is None:
+        pytest.skip("needs bash and rustc")
+    made = subprocess.run(
+        ["scripts/archive.sh"], cwd=ROOT, capture_output=True, text=True, check=True, timeout=120,
+        env={**os.environ, "UNIPBD": str(Path(sys.executable).with_name("unipbd"))},
+    )
+    archive = ROOT / made.stdout.splitlines()[-1]
+    with tarfile.open(archive) as files:
+        names = {name.split("/", 1)[1] for name in files.getnames() if "/" in name}
+    completions = {"unipbd.bash", "_unipbd", "unipbd.fish", "unipbd.elv", "_unipbd.ps1"}
+    assert {f"completions/{name}" for name in completions} | {"unipbd", "man/unipbd.1", "LICENSE-MIT"} <= names
+    assert up.__version__ in archive.name and archive.with_name(archive.name + ".sha256").exists()
+
+
 def test_nothing_binds_the_build_to_one_processor() -> None:
     settings = [*ROOT.glob(".cargo/config*"), *ROOT.glob("crates/*/.cargo/config*"), *ROOT.glob("**/build.rs")]
     assert not [path for path in settings if "target-cpu" in path.read_text()]
@@ -61,6 +87,15 @@ def test_the_workflow_builds_for_every_platform_and_a_source_distribution() -> N
         assert job["runs-on"] and all("uses" in step or "run" in step for step in job["steps"])
     commands = [step.get("with", {}).get("command") for step in jobs["sdist"]["steps"]]
     assert "sdist" in commands and set(jobs["publish"]["needs"]) >= {"wheel", "sdist"}
+
+
+def test_the_workflow_of_the_archives_covers_every_platform() -> None:
+    yaml = pytest.importorskip("yaml")
+    jobs = yaml.safe_load((ROOT / ".github" / "workflows" / "release.yml").read_text())["jobs"]
+    targets = {row["target"] for row in jobs["archive"]["strategy"]["matrix"]["include"]}
+    wanted = {"unknown-linux-gnu", "apple-darwin"}
+    assert {f"{arch}-{system}" for arch in ("x86_64", "aarch64") for system in wanted} | {"x86_64-pc-windows-msvc"} == targets
+    assert set(jobs["attach"]["needs"]) == {"archive", "semver"}
 
 
 def test_the_source_distribution_is_complete(tmp_path: Path) -> None:

@@ -4,6 +4,8 @@
 //! skipped. Each bar prints what was measured, whether it holds or not.
 
 mod bars;
+#[cfg(doctest)]
+mod documents;
 mod groups;
 mod measure;
 mod scenes;

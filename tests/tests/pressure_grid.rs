@@ -156,6 +156,40 @@ fn a_divider_is_pressed_wherever_it_stands_on_the_grid() {
 }
 
 #[test]
+fn bodies_fall_freely_through_the_air_above_water() {
+    for (shape, density) in [("size = [0.4, 0.3]", 600.0), ("radius = 0.3", 3000.0), ("size = [0.1, 0.7]", 50.0)] {
+        for (pressure_grid, angle) in [("on", 0.0), ("on", 27.0), ("off", 27.0)] {
+            let rest = format!(
+                r#"
+                [solver]
+                pressure_grid = "{pressure_grid}"
+                [[tank]]
+                min = [0.0, 0.0]
+                max = [2.0, 4.0]
+                open = ["top"]
+                [[body]]
+                name = "falling"
+                {shape}
+                position = [1.013, 2.6]
+                angle_deg = {angle}
+                spin_deg = 40.0
+                density = {density}
+                "#
+            );
+            let mut solver = build(&water(2.0, 0.5, 0.05, &rest), 1);
+            run(&mut solver, 30, |_| ());
+            let body = &solver.bodies()[0];
+            let (speed, turn) = (body.velocity.y / (-9.81 * 0.5), body.angular_velocity.to_degrees() / 40.0);
+            bars("a body falls for half a second in the air", |bars| {
+                let of = |what: &str| format!("{what}, {shape}, {angle} degrees, pressure grid {pressure_grid}");
+                bars.within(&of("speed over g t"), speed, 0.999, 1.001);
+                bars.within(&of("spin over that of the start"), turn, 0.999, 1.001);
+            });
+        }
+    }
+}
+
+#[test]
 fn a_submerged_body_is_lifted_by_the_weight_of_its_water() {
     for (shift, angle) in [(0.0, 0.0), (0.013, 0.0), (0.031, 20.0), (0.045, 45.0)] {
         let rest = format!(

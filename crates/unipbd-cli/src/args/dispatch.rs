@@ -7,7 +7,8 @@ use unipbd_core::scene::nearest;
 
 use crate::exit::Failure;
 
-const COMMANDS: [&str; 8] = ["run", "check", "expect", "info", "render", "bench", "schema", "help"];
+const COMMANDS: [&str; 10] =
+    ["run", "check", "expect", "info", "render", "bench", "schema", "completions", "man", "help"];
 
 /// Puts `run` in front of a scene that stands where a command is expected.
 ///

@@ -10,6 +10,7 @@ use std::path::PathBuf;
 
 use clap::builder::styling::{AnsiColor, Styles};
 use clap::{Args, Parser, Subcommand};
+use clap_complete::Shell;
 
 pub use bench::BenchArgs;
 pub use dispatch::{is_log, log_is_no_scene, with_default_command};
@@ -102,6 +103,39 @@ pub enum Command {
     /// Print the JSON schema of scene files, for completion and checking in editors
     #[command(after_help = "Example:\n  unipbd schema > scene.schema.json")]
     Schema,
+    /// Print the completions of this command for a shell
+    #[command(after_help = COMPLETIONS_HELP)]
+    Completions(CompletionsArgs),
+    /// Print the manual page, or write one page per command into a folder
+    #[command(after_help = MAN_HELP)]
+    Man(ManArgs),
+}
+
+const COMPLETIONS_HELP: &str = "\
+Examples:
+  unipbd completions bash > ~/.local/share/bash-completion/completions/unipbd
+  unipbd completions zsh > ~/.zfunc/_unipbd             where ~/.zfunc is in $fpath
+  unipbd completions fish > ~/.config/fish/completions/unipbd.fish";
+
+const MAN_HELP: &str = "\
+Examples:
+  unipbd man | man -l -
+  unipbd man --directory ~/.local/share/man/man1";
+
+/// Arguments of `completions`.
+#[derive(Debug, Args)]
+pub struct CompletionsArgs {
+    /// The shell
+    #[arg(value_name = "SHELL")]
+    pub shell: Shell,
+}
+
+/// Arguments of `man`.
+#[derive(Debug, Args)]
+pub struct ManArgs {
+    /// Write unipbd.1 and a page for each command into this folder
+    #[arg(long, value_name = "PATH")]
+    pub directory: Option<PathBuf>,
 }
 
 /// Arguments of `check`.

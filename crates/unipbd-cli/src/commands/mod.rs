@@ -2,9 +2,11 @@
 
 mod bench;
 mod check;
+mod completions;
 mod estimate;
 mod expect;
 mod info;
+mod manual;
 mod recording;
 mod render;
 mod run;
@@ -25,5 +27,7 @@ pub fn execute(command: &Command, console: Console) -> Result<Exit, Failure> {
         Command::Render(arguments) => render::render(arguments, console),
         Command::Bench(arguments) => bench::bench(arguments, console),
         Command::Schema => schema::schema(console),
+        Command::Completions(arguments) => completions::completions(arguments, console),
+        Command::Man(arguments) => manual::manual(arguments, console),
     }
 }

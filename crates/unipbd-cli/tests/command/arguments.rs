@@ -147,3 +147,30 @@ fn the_environment_gives_the_threads_where_the_argument_does_not() {
     place.command(&["drop.toml", "--no-record"]).env("UNIPBD_THREADS", "many").assert().code(2);
     place.command(&["drop.toml", "--no-record", "--threads", "1"]).env("UNIPBD_THREADS", "2").assert().code(0);
 }
+
+#[test]
+fn completions_know_the_commands_and_options_of_every_shell() {
+    let place = Place::new();
+    for shell in ["bash", "zsh", "fish", "elvish", "powershell"] {
+        let script = place.run(&["completions", shell]).exits(0).stdout();
+        for word in ["render", "stop-on", "threads", "completions"] {
+            assert!(script.contains(word), "{word} is missing from the completions of {shell}");
+        }
+    }
+    assert!(place.run(&["completions", "dos"]).exits(2).stderr().contains("bash"));
+}
+
+#[test]
+fn the_manual_is_a_page_or_a_page_for_each_command() {
+    let place = Place::new();
+    let page = place.run(&["man"]).exits(0).stdout();
+    for word in [".TH unipbd 1", "Exit codes", "UNIPBD_THREADS"] {
+        assert!(page.contains(word), "{word} is missing from:\n{page}");
+    }
+    std::fs::create_dir(place.path("man")).unwrap();
+    place.run(&["man", "--directory", "man"]).exits(0);
+    for name in ["unipbd.1", "unipbd-run.1", "unipbd-render.1"] {
+        assert!(std::fs::read_to_string(place.path("man").join(name)).unwrap().contains(".TH"), "{name}");
+    }
+    assert!(place.run(&["man", "--directory", "nowhere"]).exits(1).stderr().contains("nowhere"));
+}

@@ -156,9 +156,9 @@ impl RigidBodies {
 
     /// The rows in which hinges, welds and sliders hold two bodies; none for other joints.
     fn hinge_rows(&self, joint: Joint) -> impl Iterator<Item = HeldRow> {
-        let pose = |body: u32| self.bodies.pose(body);
-        let on = |body: u32, anchor: Vector64, sign: f64, axis: Vector64, turn: f64| {
-            let arm = Vector64::from_angle(pose(body).angle).rotate(anchor);
+        let bodies = &self.bodies;
+        let on = move |body: u32, anchor: Vector64, sign: f64, axis: Vector64, turn: f64| {
+            let arm = Vector64::from_angle(bodies.pose(body).angle).rotate(anchor);
             (body, [sign * axis.x, sign * axis.y, sign * (arm.perp_dot(axis) + turn)])
         };
         let (x, y, none) = ((Vector64::X, 0.0), (Vector64::Y, 0.0), Vector64::ZERO);
@@ -166,7 +166,8 @@ impl RigidBodies {
             JointKind::Hinge { .. } => vec![x, y],
             JointKind::Weld { .. } => vec![x, y, (none, 1.0)],
             JointKind::Slider { axis, .. } => {
-                let along = Vector64::from_angle(joint.other.map_or(0.0, |other| pose(other).angle)).rotate(axis);
+                let along =
+                    Vector64::from_angle(joint.other.map_or(0.0, |other| bodies.pose(other).angle)).rotate(axis);
                 vec![(along.perp(), 0.0), (none, 1.0)]
             }
             _ => Vec::new(),

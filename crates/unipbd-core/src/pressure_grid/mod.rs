@@ -154,7 +154,7 @@ impl PressureGrid {
         if solids.any() {
             self.fluid.take(couplings);
         }
-        system.mask(solids, stride, &self.fluid, couplings);
+        system.mask((solids, fields), stride, &self.fluid, couplings);
         if solids.any() {
             multigrid.add_up(parallelism);
         }

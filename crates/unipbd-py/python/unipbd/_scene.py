@@ -140,7 +140,9 @@ class Scene(Keys, Builder):
         return _Named(self, ("body",), "body")
 
     def describe(self, table: str = "") -> str:
-        """What each key of a scene means, one per line; or each key of one of its tables::
+        """What each key of a scene means, one per line, or each key of one of its tables.
+
+        For example::
 
             print(scene.describe())
             print(scene.describe("body"))
