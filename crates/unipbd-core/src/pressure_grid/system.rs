@@ -24,13 +24,15 @@ const LEAST_DEPTH: Real = 0.5;
 const LEAST_FILL: Real = 0.1;
 /// Fraction of the compression by curved paths within a substep that the right side anticipates.
 const CURVATURE: Real = 0.5;
-/// Liquid cells with a lower fill fraction than this are contracted: the cell contains merged spray, not a continuous
-/// liquid...
-const POROUS: Real = 0.9;
+/// Liquid cells with a lower fill fraction than this are contracted: flow around corners and merged spray leave pores.
+/// At 0.9 a dam break comes to rest half a spacing too high, and water that sways through a gap gains energy...
+const POROUS: Real = 0.98;
 /// ...by this part of what is missing in each substep...
-const POROUS_RELAXATION: Real = 0.06;
-/// ...if the fill is uniform around the cell: near a free surface the fill of opposite neighbours differs by more.
-const SLANTED: Real = 0.3;
+const POROUS_RELAXATION: Real = 0.1;
+/// ...if the fill is uniform around the cell: near a free surface the fill of opposite neighbours differs by more...
+const SLANTED: Real = 0.6;
+/// ...and its particles are not compressed already: a liquid drawn out has a low fill without pores.
+const COMPRESSED: Real = 0.005;
 
 /// The system of one substep, by cell.
 #[derive(Default)]
@@ -168,9 +170,16 @@ impl System {
         }
     }
 
-    /// Finds the cells inside bodies from the couplings of the fluid, and couples the cells a body covers as if it were
-    /// fluid of its density: for the preconditioner.
-    pub fn mask(&mut self, solids: &Solids, stride: usize, fluid: &Couplings, out: &mut Couplings) {
+    /// Finds the cells inside bodies from the couplings of the fluid, and those at bodies in the air, which no fluid
+    /// reaches and whose pressure is zero; couples the cells a body covers as if it were fluid of its density: for the
+    /// preconditioner.
+    pub fn mask(
+        &mut self,
+        (solids, fields): (&Solids, &Fields),
+        stride: usize,
+        fluid: &Couplings,
+        out: &mut Couplings,
+    ) {
         self.masked.clear();
         if !solids.any() {
             return;
@@ -178,7 +187,9 @@ impl System {
         self.masked.resize(self.depth.len(), false);
         for &cell in &self.touched {
             let cell = cell as usize;
-            self.masked[cell] = self.depth[cell] >= 0.0 && fluid.total[cell] < MASKED;
+            let faces = [fields.left[cell], fields.left[cell + 1], fields.lower[cell], fields.lower[cell + stride]];
+            let dry = faces.iter().all(|[_, weight]| *weight == 0.0);
+            self.masked[cell] = self.depth[cell] >= 0.0 && (dry || fluid.total[cell] < MASKED);
         }
         for solid in &solids.solids {
             for face in solids.faces_of(solid) {
@@ -264,12 +275,13 @@ impl System {
                     continue;
                 }
                 divergence[k] = -flow.out_of(cell, open);
-                excess[k] = taken_back * lattice.cell * mean(fields.centre[cell]);
+                let error = mean(fields.centre[cell]);
+                excess[k] = taken_back * lattice.cell * error;
                 if flow.neighbors(cell).into_iter().all(|other| depth[other] >= 0.0) {
                     divergence[k] += curving * bare[cell] * flow.squeeze(cell);
                     let fill = |cell: usize| fields.centre[cell][1] * openings.inverse[cell];
                     let [left, right, lower, upper] = flow.neighbors(cell).map(fill);
-                    if (left - right).abs() + (lower - upper).abs() < SLANTED {
+                    if (left - right).abs() + (lower - upper).abs() < SLANTED && error < COMPRESSED {
                         excess[k] += POROUS_RELAXATION * lattice.cell * smaller(fill(cell) - POROUS, 0.0);
                     }
                 }
