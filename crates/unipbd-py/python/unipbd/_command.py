@@ -8,7 +8,7 @@ import sys
 
 from . import _native
 
-OWN = {"dataset": "datasets._command"}
+OWN = {"dataset": "datasets._command", "sweep": "sweep._command"}
 """Commands of this package by the module that runs them."""
 
 

@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import os
 import platform
 import shutil
 import time
-from collections.abc import Callable, Iterator
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from collections.abc import Callable
 from dataclasses import dataclass
-from multiprocessing import get_context
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from .. import _native
-from .._errors import UnipbdError
+from .._work import claim, processes, run_all, share, write
 from . import _gns, _lagrangebench
 from ._parts import Parts
 from ._recipe import Recipe
@@ -64,17 +63,15 @@ def generate(
     and `jobs` (processes; all processors where left out). With `keep_parts` the parts stay.
     """
     recipe = recipe if isinstance(recipe, Recipe) else Recipe.load(recipe)
-    number, of = shard
-    if not 1 <= number <= of:
-        raise ValueError(f"a shard is a pair such as (3, 16), not {shard}")
     place = Path(folder)
-    _claim(recipe, place)
+    indices = share(recipe.trajectories, shard)
+    claim(place, "recipe.json", recipe.to_dict())
     if (place / "manifest.json").exists():
         return _formats(place)
     parts = place / "parts"
     parts.mkdir(exist_ok=True)
-    _run(recipe, parts, list(range(number - 1, recipe.trajectories, of)), jobs, progress)
-    if of > 1:
+    _run(recipe, parts, indices, jobs, progress)
+    if shard != (1, 1):
         return []
     return assemble(recipe, place, keep_parts)
 
@@ -85,29 +82,10 @@ def assemble(recipe: Recipe, folder: Path, keep_parts: bool = False) -> list[Pat
     made = [WRITERS[form](parts, folder) for form in recipe.formats]
     _write_diagnostics(parts, folder / "diagnostics.npz")
     text = json.dumps(_manifest(parts, [path.name for path in made]), indent=1, sort_keys=True)
-    part = folder / "manifest.json.part"
-    part.write_text(text, encoding="utf-8")
-    os.replace(part, folder / "manifest.json")
+    write(folder / "manifest.json", text)
     if not keep_parts:
         shutil.rmtree(folder / "parts")
     return made
-
-
-def _claim(recipe: Recipe, folder: Path) -> None:
-    """Takes the folder for this recipe; refuses one that holds another."""
-    folder.mkdir(parents=True, exist_ok=True)
-    path, wanted = folder / "recipe.json", recipe.to_dict()
-    if not path.exists():
-        part = folder / f"recipe.json.{os.getpid()}"
-        part.write_text(json.dumps(wanted, indent=1, sort_keys=True), encoding="utf-8")
-        os.replace(part, path)
-        return
-    there = json.loads(path.read_text(encoding="utf-8"))
-    wanted = json.loads(json.dumps(wanted))
-    if there != wanted:
-        keys = sorted(key for key in {*there, *wanted} if there.get(key) != wanted.get(key))
-        differ = ", ".join(keys)
-        raise UnipbdError(f"{folder} holds the data set of another recipe: {differ} differ; choose another folder")
 
 
 def _formats(folder: Path) -> list[Path]:
@@ -118,12 +96,13 @@ def _formats(folder: Path) -> list[Path]:
 def _run(
     recipe: Recipe, parts: Path, indices: list[int], jobs: int | None, progress: Callable[[Progress], object] | None
 ) -> None:
-    processors = os.cpu_count() or 1
     wanted = [index for index in indices if not (parts / f"{index:05d}" / "record.json").exists()]
-    jobs = max(1, min(jobs or processors, len(wanted)))
-    threads = max(1, processors // jobs) if len(wanted) < processors else 1
+    jobs = processes(jobs, len(wanted))
+    # Where there are fewer runs than processors each has several: threads change no result.
+    threads = max(1, (os.cpu_count() or 1) // jobs) if len(wanted) == jobs else 1
     started, done, refused = time.monotonic(), len(indices) - len(wanted), 0
-    for record in _records(recipe, parts, wanted, jobs, threads):
+    work = functools.partial(_numbered, recipe, parts, threads)
+    for record in run_all(work, wanted, jobs):
         done, refused = done + 1, refused + len(record["refused"])
         elapsed = time.monotonic() - started
         left = elapsed / (done - len(indices) + len(wanted)) * (len(indices) - done)
@@ -131,20 +110,8 @@ def _run(
             progress(Progress(done, len(indices), refused, elapsed, left))
 
 
-def _records(recipe: Recipe, parts: Path, wanted: list[int], jobs: int, threads: int) -> Iterator[dict[str, Any]]:
-    """Records in the order in which they get done."""
-    if jobs == 1:
-        for index in wanted:
-            yield run_trajectory(recipe, index, parts, threads)
-        return
-    with ProcessPoolExecutor(jobs, mp_context=get_context("spawn")) as pool:
-        futures = [pool.submit(run_trajectory, recipe, index, parts, threads) for index in wanted]
-        try:
-            for future in as_completed(futures):
-                yield future.result()
-        except BaseException:
-            pool.shutdown(cancel_futures=True)
-            raise
+def _numbered(recipe: Recipe, parts: Path, threads: int, index: int) -> dict[str, Any]:
+    return run_trajectory(recipe, index, parts, threads)
 
 
 def _write_diagnostics(parts: Parts, path: Path) -> None:

@@ -11,10 +11,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from .. import _native
 from .._arrays import plain
-from .._errors import SceneError
 from .._paths import assign
+from .._scene_table import read_scene
 from .._toml import RecipeError, known, read
 from ._fields import check_force, check_start
 
@@ -89,7 +88,7 @@ class Recipe:
         """A recipe from nested dicts; a scene that is a path is looked for in `folder`."""
         data = plain(copy.deepcopy(dict(tables)))
         known(data, _KEYS)
-        data["scene"] = _scene(data.get("scene"), Path(folder))
+        data["scene"] = read_scene(data.get("scene"), Path(folder))
         data.setdefault("name", data["scene"].get("name") or "data set")
         for key in ("formats", "vary", "scatter"):
             if key in data:
@@ -149,22 +148,6 @@ class Recipe:
         check_start(self.start)
         check_force(self.force)
         _drawn(self)
-
-
-def _scene(given: Any, folder: Path) -> dict[str, Any]:
-    """The scene as a dict with all its defaults."""
-    if isinstance(given, str):
-        data, _ = _native.load_scene(folder / given)
-        return data
-    if not isinstance(given, Mapping):
-        raise RecipeError("a scene is wanted: a table [scene], or the name of a scene file", "scene")
-    try:
-        return _native.check_scene(plain(dict(given)))
-    except SceneError as error:
-        problem = error.problems[0] if error.problems else None
-        if problem is None:
-            raise
-        raise RecipeError(problem.message, f"scene.{problem.key}" if problem.key else "scene", problem.hint) from None
 
 
 def _whole(value: Any, low: int, key: str) -> None:

@@ -17,6 +17,7 @@ from .._scene import Scene
 from .._simulation import Simulation, _call
 from .._state import State
 from .._walls import bounds, wall_particles
+from .._work import write
 from . import _fields
 from ._draw import Crowded, Drawer
 from ._recipe import Recipe
@@ -105,7 +106,7 @@ class _Run:
                 shutil.rmtree(self.place, ignore_errors=True)
             raise
         record = self._record(refused)
-        _write(self.place / "record.json", json.dumps(record, indent=1, sort_keys=True))
+        write(self.place / "record.json", json.dumps(record, indent=1, sort_keys=True))
         (self.place / "state.bin").unlink(missing_ok=True)
         shutil.rmtree(done, ignore_errors=True)
         os.replace(self.place, done)
@@ -195,7 +196,7 @@ class _Run:
         kept = {"frame": number, "start": f"{self.hash_of_start:016x}", "recipe": self.recipe.digest()}
         state = self.sim.state().to_bytes()
         data = json.dumps(kept).encode("utf-8")
-        _write(self.place / "state.bin", len(data).to_bytes(4, "little") + data + state)
+        write(self.place / "state.bin", len(data).to_bytes(4, "little") + data + state)
 
     def _resume(self, shape: tuple[int, int, int]) -> int:
         """The stored frame to go on with; 0 where there is nothing to go on from."""
@@ -261,13 +262,3 @@ def _memory(path: Path, mode: str, dtype: type, shape: tuple[int, ...]) -> Any:
     if array.shape != shape or array.dtype != np.dtype(dtype):
         raise ValueError("another shape")
     return array
-
-
-def _write(path: Path, data: str | bytes) -> None:
-    """Writes a file, wholly or not at all."""
-    part = path.with_name(path.name + ".part")
-    part.write_bytes(data.encode("utf-8") if isinstance(data, str) else data)
-    os.replace(part, path)
-
-
-__all__ = ["COLUMNS", "first_simulation", "read_record", "run_trajectory", "spread"]
