@@ -9,8 +9,9 @@ Importing this module registers
 
 - ``unipbd/Balance-v0``: keep a top-heavy float upright on moving water, see `Balance`,
 - ``unipbd/Pour-v0``: pour water over a wall by tilting the vessel, see `Pour`,
-- ``unipbd/KeepUpright-v0``, ``unipbd/PourOver-v0``, ``unipbd/Stir-v0``, ``unipbd/HoldBoat-v0``: tasks that run in one world (`TaskEnv`)
-  or in many at once (`BatchEnv`), shown as numbers, grids, points or probes; see `unipbd.envs.tasks`::
+- ``unipbd/KeepUpright-v0``, ``unipbd/PourOver-v0``, ``unipbd/Stir-v0``, ``unipbd/HoldBoat-v0``: tasks that run in one
+  world (`TaskEnv`) or in many at once (`BatchEnv`), shown as numbers, grids, points or probes; see
+  `unipbd.envs.tasks`::
 
     envs = gymnasium.make_vec("unipbd/Stir-v0", num_envs=16, vectorization_mode="vector_entry_point")
 
@@ -34,9 +35,10 @@ __all__ = ["TASKS", "Balance", "BatchEnv", "Pour", "TaskEnv"]
 
 register("unipbd/Balance-v0", entry_point="unipbd.envs.balance:Balance", max_episode_steps=200)
 register("unipbd/Pour-v0", entry_point="unipbd.envs.pour:Pour", max_episode_steps=100)
-for _name, _task in (("KeepUpright-v0", "balance"), ("PourOver-v0", "pour"), ("Stir-v0", "stir"), ("HoldBoat-v0", "boat")):
+_NAMES = {"balance": "KeepUpright", "pour": "PourOver", "stir": "Stir", "boat": "HoldBoat"}
+for _task, _name in _NAMES.items():
     register(
-        f"unipbd/{_name}",
+        f"unipbd/{_name}-v0",
         entry_point="unipbd.envs:TaskEnv",
         vector_entry_point="unipbd.envs:BatchEnv",
         max_episode_steps=TASKS[_task].horizon,
