@@ -54,7 +54,8 @@ Examples:
 
 /// Run, inspect and draw 2D particle scenes: liquids, gas, smoke and rigid bodies.
 ///
-/// `unipbd SCENE.toml` is short for `unipbd run SCENE.toml`. Data goes to standard output, messages
+/// `unipbd SCENE.toml` is short for `unipbd run SCENE.toml`. The Python package adds `unipbd dataset`
+/// and `unipbd sweep`. Data goes to standard output, messages
 /// and progress to standard error.
 #[derive(Debug, Parser)]
 #[command(name = "unipbd", version, styles = STYLES, after_help = AFTER_HELP, max_term_width = 110)]
