@@ -7,8 +7,21 @@ use unipbd_core::scene::nearest;
 
 use crate::exit::Failure;
 
-const COMMANDS: [&str; 10] =
-    ["run", "check", "expect", "info", "render", "bench", "schema", "completions", "man", "help"];
+const COMMANDS: [&str; 13] = [
+    "run",
+    "check",
+    "expect",
+    "info",
+    "render",
+    "export",
+    "recover",
+    "layout",
+    "bench",
+    "schema",
+    "completions",
+    "man",
+    "help",
+];
 
 /// Commands that only the Python package has.
 const COMMANDS_OF_PYTHON: [&str; 2] = ["dataset", "sweep"];
