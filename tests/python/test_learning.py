@@ -29,7 +29,7 @@ def test_a_float_is_kept_upright_by_a_policy_that_was_learned(tmp_path: Path, fu
     subprocess.run([*pip, "stable-baselines3", "matplotlib"], check=True)
     # An environment of its own: stable-baselines3 wants an older Gymnasium.
     shutil.copytree(Path(up.__file__).parent, tmp_path / "package" / "unipbd")
-    words = [str(python), str(EXAMPLE), "60000", str(tmp_path / "curve.png")]
+    words = [str(python), str(EXAMPLE), "30000", str(tmp_path / "curve.png")]
     paths = {**os.environ, "PYTHONPATH": str(tmp_path / "package")}
     run = subprocess.run(words, capture_output=True, text=True, timeout=1800, env=paths)
     assert run.returncode == 0, run.stderr[-3000:]

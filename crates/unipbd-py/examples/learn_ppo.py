@@ -79,7 +79,7 @@ def evaluate(model: Any, episodes: int) -> float:
     return float(total.mean())
 
 
-def main(steps: str = "60000", picture: str = "") -> None:
+def main(steps: str = "30000", picture: str = "") -> None:
     torch.set_num_threads(1)
     worlds = Worlds(BatchEnv("balance", WORLDS, autoreset_mode="SameStep"))
     curve: list[tuple[int, float]] = []
