@@ -11,6 +11,7 @@ mod liquids;
 mod obstacles;
 mod plume;
 mod pressure_grid;
+mod scale;
 mod shape_matching;
 mod smoke;
 mod stages;

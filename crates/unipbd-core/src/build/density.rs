@@ -18,7 +18,12 @@ pub(super) fn of(scene: &Scene) -> Built {
         let kernel = Formula::of(scene);
         return built(scene, &kernel, |settings| match &scene.legacy.mass_density {
             Some(description) => Box::new(MassDensity::new(scene, kernel, description)),
-            None => Box::new(LegacyDensity::new(scene, kernel, settings.volume, Density::new(kernel, settings))),
+            None => Box::new(LegacyDensity::new(
+                scene,
+                kernel,
+                [settings.volume, settings.unit],
+                Density::new(kernel, settings),
+            )),
         });
     }
     let kernel = Kernel::new(scene.solver.kernel_radius * scene.spacing);

@@ -322,6 +322,7 @@ impl World {
     /// Runs the stages that end a frame and sets the clock to its end.
     pub fn end_frame(&mut self, begun: Begun) -> Result<FrameReport, SolverError> {
         self.run_all(|plan| &plan.end)?;
+        self.check_finite()?;
         self.watch_density();
         let inverse = 1.0 / self.parts.frame_time;
         self.wall_forces = self.wall_impulses.iter().map(|impulse| *impulse * inverse).collect();

@@ -25,6 +25,7 @@ impl<K: Shape> Density<K> {
                 Some(inverse_mass) if !now.particles.any_scripted() => Weights::Uniform(inverse_mass),
                 _ => Weights::Column(now.particles.inverse_masses()),
             },
+            unit: self.settings.unit,
         };
         let sums = &mut self.sums;
         let out = DensityOutput { value: &mut sums.value, gradient: &mut sums.gradient, response: &mut sums.response };
@@ -37,6 +38,8 @@ impl<K: Shape> Density<K> {
         let behind_walls = BehindWalls { now, coverage: &self.coverage, points: self.places.iteration(now).world };
         let terms = Terms {
             volume,
+            volume_in_units: volume / self.settings.unit,
+            to_step: 1.0 / self.settings.step_unit,
             own: self.kernel.value(0.0) * volume - 1.0,
             stiffness: now.stiffness,
             limit: now.pressure_limit * now.dt * now.dt,
@@ -100,7 +103,7 @@ impl<K: Shape> Density<K> {
         passes::correction(now.pairs(), self.kernel.shape(), positions, &self.step, records, sums);
         let (sums, steps, walls) = (&self.sums.gradient, &self.step, &self.wall_gradient);
         let (volume, inverse_masses) = (self.settings.volume, now.particles.inverse_masses());
-        let rows = now.particles.listed();
+        let (rows, unit) = (now.particles.listed(), self.settings.step_unit);
         // The admitted pressures accelerate to this speed at most (Bernoulli). The limit cuts the displacements of a
         // crushed heap where the step is too long for them.
         let farthest = (2.0 * now.pressure_limit).sqrt() * now.dt;
@@ -109,7 +112,7 @@ impl<K: Shape> Density<K> {
             let (sums, walls) = (&sums[rows.clone()], &walls[rows.clone()]);
             let (steps, inverse_masses) = (&steps[rows.clone()], &inverse_masses[rows]);
             for k in 0..displacements.len() {
-                let step = inverse_masses[k] * (sums[k] * volume + walls[k] * steps[k]);
+                let step = unit * inverse_masses[k] * (sums[k] * volume + walls[k] * steps[k]);
                 displacements[k] -= at_most(step, farthest);
             }
         });
@@ -135,7 +138,7 @@ impl<K: Shape> Density<K> {
     /// The forces of the same multipliers on the samples of bodies. Run after [`correct`](Self::correct).
     pub(super) fn load_bodies(&self, now: Substep<'_>, out: &mut Corrections) {
         let (sums, volume, phases) = (&self.sums.gradient, self.settings.volume, now.particles.phases());
-        let share = self.settings.velocity_share;
+        let share = self.settings.velocity_share * self.settings.step_unit;
         now.parallelism.update(out.loads_mut(), |i, load| {
             if phases[i] == Phase::Rigid {
                 *load -= sums[i] * (volume * share);
@@ -150,7 +153,7 @@ impl<K: Shape> Density<K> {
         }
         let positions = self.places.iteration(now).world.gradient;
         let (steps, inverse_masses) = (&self.step, now.particles.inverse_masses());
-        let share = self.settings.velocity_share;
+        let share = self.settings.velocity_share * self.settings.step_unit;
         for (row, &position) in positions.iter().enumerate() {
             if steps[row] != 0.0 && inverse_masses[row] > 0.0 {
                 now.walls.shares(position, &self.coverage, |wall, slope| {
@@ -267,6 +270,10 @@ impl BehindWalls<'_> {
 struct Terms {
     /// Weight of one neighbour [m^2].
     volume: Real,
+    /// The same over the unit of the responses.
+    volume_in_units: Real,
+    /// From a change of a multiplier to a step in its unit.
+    to_step: Real,
     /// Contribution of a row itself to its density error, less the rest density.
     own: Real,
     /// Part of the relaxation that counts.
@@ -291,7 +298,7 @@ struct Relaxed<'a> {
 impl Relaxed<'_> {
     #[inline(always)]
     fn relax(&mut self, terms: Terms, material: impl Fn(usize) -> DensityMaterial) {
-        let Terms { volume, own, stiffness, limit } = terms;
+        let Terms { volume, volume_in_units, to_step, own, stiffness, limit } = terms;
         let rows = self.error.len();
         let (value, gradient, response) = (&self.value[..rows], &self.gradient[..rows], &self.response[..rows]);
         let (inverse_mass, wall) = (&self.inverse_mass[..rows], &self.wall[..rows]);
@@ -299,9 +306,10 @@ impl Relaxed<'_> {
         for k in 0..rows {
             error[k] += volume * value[k] + own;
             let gradient = gradient[k] * volume + wall[k];
-            let response = inverse_mass[k] * gradient.length_squared() + volume * volume * response[k];
+            let response =
+                inverse_mass[k] * gradient.length_squared() + volume_in_units * volume_in_units * response[k];
             let new = material(k).multiplier(multiplier[k], error[k], response, inverse_mass[k], stiffness, limit);
-            step[k] = new - multiplier[k];
+            step[k] = (new - multiplier[k]) * to_step;
             multiplier[k] = new;
         }
     }
