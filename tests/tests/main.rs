@@ -9,6 +9,7 @@ mod filled_gas;
 mod import_circles;
 mod liquids;
 mod obstacles;
+mod outlines;
 mod plume;
 mod pressure_grid;
 mod scale;

@@ -70,6 +70,8 @@ pub(crate) struct PressureGrid {
     solids: Solids,
     /// Couplings of the fluid, without those that stand for bodies: only where there are bodies.
     fluid: Couplings,
+    /// Places of matter that is no particle: each fills the square of a spacing.
+    filled: Vec<Vector>,
 }
 
 impl PressureGrid {
@@ -88,7 +90,13 @@ impl PressureGrid {
             components: Components::default(),
             solids: Solids::default(),
             fluid: Couplings::default(),
+            filled: Vec::new(),
         }
+    }
+
+    /// The places of matter in bodies that are no particles, to be written before a projection [m].
+    pub(crate) fn filled_mut(&mut self) -> &mut Vec<Vector> {
+        &mut self.filled
     }
 
     /// Changes the velocities of predicted particles and bodies by the pressure of the grid, and moves them along.
@@ -137,6 +145,7 @@ impl PressureGrid {
         }
         let (lattice, openings, stride) = (&self.lattice, &self.openings, self.lattice.stride());
         self.transfer.gather(lattice, particles, (&self.mixture, area), parallelism);
+        self.transfer.fill(lattice, &self.filled, area);
         let fields = self.transfer.fields();
         let (system, multigrid, solids) = (&mut self.system, &mut self.multigrid, &mut self.solids);
         if let Some(immersed) = bodies {
@@ -247,6 +256,7 @@ impl PressureGrid {
             + self.components.memory_bytes()
             + self.solids.memory_bytes()
             + self.fluid.memory_bytes()
+            + held(&self.filled)
     }
 }
 

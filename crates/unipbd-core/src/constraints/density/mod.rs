@@ -104,6 +104,7 @@ impl<K: Shape> Density<K> {
         self.correct(now, out);
         self.load_bodies(now, out);
         self.load_walls(now, out);
+        self.load_outlines(now, out);
         self.repel(now, out);
     }
 }

@@ -12,7 +12,8 @@ use crate::passes::{self, DensityInput, DensityOutput, Weights};
 use crate::phase::{Phase, uniform};
 use crate::simd::Level;
 use crate::simd::space::{Open, Space, Wrapped};
-use crate::walls::Coverage;
+use crate::walls::{Coverage, Moment};
+use std::ops::Range;
 
 impl<K: Shape> Density<K> {
     /// Pass 1: sums of the kernel, its gradient and the response of the neighbours.
@@ -163,6 +164,25 @@ impl<K: Shape> Density<K> {
         }
     }
 
+    /// The forces of the same multipliers on bodies that are walls by their outlines.
+    pub(super) fn load_outlines(&self, now: Substep<'_>, out: &mut Corrections) {
+        if out.outline_loads().is_empty() {
+            return;
+        }
+        let points = self.places.iteration(now).world;
+        let moment = if points.other_gradient().is_some() { Moment::Start } else { Moment::End };
+        let (steps, inverse_masses) = (&self.step, now.particles.inverse_masses());
+        let share = self.settings.velocity_share * self.settings.step_unit;
+        for (row, &position) in points.gradient[..self.wall_gradient.len()].iter().enumerate() {
+            if steps[row] != 0.0 && inverse_masses[row] > 0.0 && self.wall_gradient[row] != Vector::ZERO {
+                now.outlines.each_near(position, moment, |near| {
+                    let arm = now.outlines.arm(near.outline, position, moment);
+                    out.outline_loads_mut()[near.outline].add(wide(near.gradient * (steps[row] * share)), arm);
+                });
+            }
+        }
+    }
+
     /// Keeps gas particles apart: below 0.8 spacings a pair gives back a part of its overlap.
     pub(super) fn repel(&mut self, now: Substep<'_>, out: &mut Corrections) {
         let Some(reach) = self.settings.repulsion else { return };
@@ -227,7 +247,8 @@ impl<S: Space, K: Shape> Work for Measured<'_, S, K> {
             for run in now.neighbors.runs_near(point).iter() {
                 near.weigh(&at, run, &mut sums);
             }
-            *out = scale * sums.weight() + now.walls.coverage(point, &density.coverage).0 - 1.0;
+            let covered = now.walls.coverage(point, &density.coverage).0 + now.outlines.coverage(point, Moment::End).0;
+            *out = scale * sums.weight() + covered - 1.0;
         }
     }
 }
@@ -242,12 +263,20 @@ struct BehindWalls<'a> {
 impl BehindWalls<'_> {
     /// The parts where the density is taken, and their gradients where gradients are taken [1/m].
     fn fill(&self, first: usize, parts: &mut [Real], slopes: &mut [Vector]) {
-        let (walls, coverage) = (self.now.walls, self.coverage);
+        let walls = self.now.walls;
         parts.fill(0.0);
         slopes.fill(Vector::ZERO);
-        if walls.is_empty() {
-            return;
+        let rows = first..first + parts.len();
+        if !walls.is_empty() {
+            self.fill_walls(first, parts, slopes);
         }
+        if !self.now.outlines.is_empty() {
+            self.add_outlines(rows, parts, slopes);
+        }
+    }
+
+    fn fill_walls(&self, first: usize, parts: &mut [Real], slopes: &mut [Vector]) {
+        let (walls, coverage) = (self.now.walls, self.coverage);
         let (rows, reach) = (first..first + parts.len(), coverage.radius());
         let mut distances = [0.0; CHUNK_ROWS];
         let mut near = |points: &[Vector], visit: &mut dyn FnMut(usize, (Real, Vector))| {
@@ -261,6 +290,20 @@ impl BehindWalls<'_> {
         if let Some(positions) = self.points.other_gradient() {
             slopes.fill(Vector::ZERO);
             near(&positions[rows], &mut |k, behind| slopes[k] = behind.1);
+        }
+    }
+
+    fn add_outlines(&self, rows: Range<usize>, parts: &mut [Real], slopes: &mut [Vector]) {
+        let outlines = self.now.outlines;
+        let elsewhere = self.points.other_gradient();
+        outlines.each_seen(&self.points.value[rows.clone()], Moment::End, |k, near| {
+            parts[k] += near.part;
+            if elsewhere.is_none() {
+                slopes[k] += near.gradient;
+            }
+        });
+        if let Some(positions) = elsewhere {
+            outlines.each_seen(&positions[rows], Moment::Start, |k, near| slopes[k] += near.gradient);
         }
     }
 }

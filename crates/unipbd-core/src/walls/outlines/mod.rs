@@ -6,7 +6,7 @@ mod round;
 mod tests;
 
 use super::EdgeTables;
-use crate::kernel::{Kernel, Shape as KernelShape, WendlandC2};
+use crate::kernel::{Kernel, WendlandC2};
 use crate::math::{Real, Vector, Vector64, real, vector, wide};
 use crate::periodic::Periodic;
 use crate::shapes::Shape;
@@ -45,6 +45,7 @@ pub struct Outlines {
 #[derive(Clone, Debug)]
 struct Spot {
     body: u32,
+    shape: Shape,
     form: Form,
     /// At the start and at the end of the substep.
     places: [Place; 2],
@@ -86,11 +87,17 @@ impl Outlines {
         self.spots.len()
     }
 
-    /// Takes these outlines in place of the old ones: bodies and their shapes, about their centres of mass.
+    /// Takes these outlines in place of the old ones: bodies in the order of their ids, and their shapes about their
+    /// centres of mass.
     pub fn set(&mut self, outlines: impl Iterator<Item = (u32, Shape)>) {
-        self.spots.clear();
+        let mut known = std::mem::take(&mut self.spots).into_iter().peekable();
         let reach = f64::from(self.kernel.radius());
         for (body, shape) in outlines {
+            while known.next_if(|spot| spot.body < body).is_some() {}
+            if let Some(spot) = known.next_if(|spot| spot.body == body && spot.shape == shape) {
+                self.spots.push(spot);
+                continue;
+            }
             let tables = self.tables.get_or_insert_with(|| EdgeTables::new(&self.kernel, self.upheld));
             let form = match &shape {
                 Shape::Disc { radius } => Form::Round(Round::new(*radius, &self.kernel, tables)),
@@ -98,7 +105,7 @@ impl Outlines {
             };
             let place = Place { position: Vector64::ZERO, axis: Vector64::X };
             let reach = real(shape.bounding_radius() + reach);
-            self.spots.push(Spot { body, form, places: [place; 2], reach });
+            self.spots.push(Spot { body, shape, form, places: [place; 2], reach });
         }
     }
 
@@ -112,9 +119,10 @@ impl Outlines {
         self.spots[outline].body
     }
 
-    /// Where an outline's origin is at the end of the substep [m].
-    pub fn origin(&self, outline: usize) -> Vector64 {
-        self.spots[outline].places[1].position
+    /// The way from the origin of an outline to a point, the shortest where the domain repeats [m].
+    pub fn arm(&self, outline: usize, x: Vector, moment: Moment) -> Vector64 {
+        let apart = wide(x) - self.spots[outline].places[moment as usize].position;
+        if self.periodic.any() { wide(self.periodic.min_image(vector(apart))) } else { apart }
     }
 
     /// Part of the kernel at `x` that lies inside outlines, and its gradient [1/m].
