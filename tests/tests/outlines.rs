@@ -41,10 +41,16 @@ fn deepest(solver: &Solver) -> f64 {
 /// Mean acceleration along a frictionless ramp over g sin(angle), of a layer that lies on it.
 fn ramp(degrees: f64, depth: usize, grid: &str) -> f64 {
     let (spacing, width) = (0.02, 2 * depth.max(15));
-    let (along, up) = (Vector64::from_angle(-degrees.to_radians()), Vector64::from_angle(PI / 2.0 - degrees.to_radians()));
+    let (along, up) =
+        (Vector64::from_angle(-degrees.to_radians()), Vector64::from_angle(PI / 2.0 - degrees.to_radians()));
     let place = |i: usize, j: usize| along * ((i as f64 + 0.5) * spacing) + up * ((j as f64 + 0.5) * spacing);
     let points = list((0..depth).flat_map(|j| (0..width).map(move |i| place(i, j))));
     let ramp = list([along * -2.0, along * -2.0 - up, along * 6.0 - up, along * 6.0]);
+    let wall = if std::env::var_os("PLANE").is_some() {
+        format!("[[half_plane]]\npoint = [0.0, 0.0]\nnormal = [{}, {}]", up.x, up.y)
+    } else {
+        format!("[[body]]\nname = \"ramp\"\nkind = \"static\"\nposition = [0.0, 0.0]\noutline = [{ramp}]")
+    };
     let scene = scene(&format!(
         r#"
         spacing = {spacing}
@@ -55,11 +61,7 @@ fn ramp(degrees: f64, depth: usize, grid: &str) -> f64 {
         [[points]]
         material = "water"
         positions = [{points}]
-        [[body]]
-        name = "ramp"
-        kind = "static"
-        position = [0.0, 0.0]
-        outline = [{ramp}]
+        {wall}
         "#
     ));
     let mut solver = build(&scene, 2);
@@ -97,7 +99,8 @@ fn half_ring(inner: f64, outer: f64, from: f64) -> String {
 fn drum(grid: &str) -> Solver {
     let (spacing, radius, spin) = (0.02, 0.4, 4.0);
     let reach = (radius / spacing) as i64;
-    let lattice = (-reach..=reach).flat_map(|i| (-reach..=reach).map(move |j| Vector64::new(i as f64, j as f64) * spacing));
+    let lattice =
+        (-reach..=reach).flat_map(|i| (-reach..=reach).map(move |j| Vector64::new(i as f64, j as f64) * spacing));
     let points: Vec<Vector64> = lattice.filter(|x| x.length() < radius - 0.45 * spacing).collect();
     let velocities = list(points.iter().map(|x| x.perp() * spin));
     let scene = scene(&format!(
@@ -190,7 +193,12 @@ fn a_vessel_of_bodies_is_pressed_as_it_should_be() {
         let [floor, left, right] = forces(&mut solver)[..] else { panic!("three bodies") };
         bars("vessel of three bodies", |bars| {
             bars.within(&format!("force on the floor over the weight, grid {grid}"), -floor.y / weight, 0.99, 1.01);
-            bars.within(&format!("force on the left side over rho g h^2/2, grid {grid}"), -left.x / (weight / 4.0), 0.99, 1.01);
+            bars.within(
+                &format!("force on the left side over rho g h^2/2, grid {grid}"),
+                -left.x / (weight / 4.0),
+                0.99,
+                1.01,
+            );
             bars.within(&format!("force on the right side, grid {grid}"), right.x / (weight / 4.0), 0.99, 1.01);
         });
     }
@@ -210,10 +218,11 @@ fn a_trough_of_one_outline_carries_its_water() {
             pressure_grid = "{grid}"
             [[liquid]]
             name = "water"
+            xsph = 0.1
             [[block]]
             material = "water"
-            min = [-0.6, 0.0]
-            max = [0.6, 1.0]
+            min = [-1.0, 0.0]
+            max = [1.0, 0.7]
             [[body]]
             name = "trough"
             kind = "static"
@@ -235,7 +244,8 @@ fn a_trough_of_one_outline_carries_its_water() {
 
 /// A star of five arms.
 fn star(outer: f64, inner: f64) -> Vec<Vector64> {
-    let corner = |k: usize| Vector64::from_angle(TAU * k as f64 / 10.0 + 0.3) * if k.is_multiple_of(2) { outer } else { inner };
+    let corner =
+        |k: usize| Vector64::from_angle(TAU * k as f64 / 10.0 + 0.3) * if k.is_multiple_of(2) { outer } else { inner };
     (0..10).map(corner).collect()
 }
 
@@ -276,8 +286,17 @@ fn submerged_discs_and_stars_are_lifted_by_the_water_they_displace() {
             let force = forces(&mut solver)[0];
             let lift = 9.81 * 1000.0 * area;
             bars("submerged body", |bars| {
-                bars.within(&format!("lift of a {name} over the weight of the water, grid {grid}"), force.y / lift, 0.99, 1.01);
-                bars.at_most(&format!("force aside on a {name} over the lift, grid {grid}"), force.x.abs() / lift, 0.01);
+                bars.within(
+                    &format!("lift of a {name} over the weight of the water, grid {grid}"),
+                    force.y / lift,
+                    0.99,
+                    1.01,
+                );
+                bars.at_most(
+                    &format!("force aside on a {name} over the lift, grid {grid}"),
+                    force.x.abs() / lift,
+                    0.01,
+                );
                 bars.at_most(&format!("depth of water in a {name}, grid {grid} [dx]"), deepest(&solver) / 0.04, 0.05);
             });
         }

@@ -71,6 +71,7 @@ impl RigidBodies {
     pub(crate) fn change_body(&mut self, body: u32, change: &BodyChange) {
         self.contacts.wake_neighbors(&mut self.bodies, body);
         self.bodies.change(body, change);
+        self.find_met();
     }
 
     /// Pushes a body by an impulse [N s] at a point [m].

@@ -13,6 +13,7 @@ use crate::particles::Particles;
 use crate::rigid::contact::{Contacts, Joint, JointKind};
 use crate::rigid::{Bodies, Body, HeldRow, Mobilities};
 use crate::rows::RowIndex;
+use outlined::Meeting;
 pub(crate) use outlined::{Met, is_outlined};
 use push_out::Penetration;
 
@@ -31,9 +32,12 @@ pub struct RigidBodies {
     /// Whether bodies that the fluid does not move are walls to it, and have no samples.
     #[serde(skip)]
     outlines: bool,
-    /// Whether the fluid meets each body, by samples or by its outline.
+    /// How the fluid meets each body.
     #[serde(skip)]
-    met: Vec<bool>,
+    met: Vec<Meeting>,
+    /// Distance of samples [m].
+    #[serde(skip)]
+    spacing: f64,
     /// Distance from a sample within which a particle may be inside the body, by body [m].
     near: Vec<Real>,
     /// Path in a substep, of a particle or a body, from which on the way counts and not the place alone [m].
@@ -93,6 +97,7 @@ impl RigidBodies {
             seen,
             outlines,
             met: Vec::new(),
+            spacing,
             near,
             far: (0.5 * spacing) as Real,
             penetrations: Vec::new(),
@@ -144,7 +149,7 @@ impl RigidBodies {
     /// Whether particles move with the bodies, samples that a fluid meets or ends of ropes, or a fluid meets their
     /// outlines.
     pub(crate) fn has_followers(&self) -> bool {
-        self.met.contains(&true) || !self.tied.is_empty()
+        self.met.iter().any(|met| *met != Meeting::None) || !self.tied.is_empty()
     }
 
     /// Finds contacts, predicts the bodies and applies the impulses kept from the last substep.
@@ -192,10 +197,10 @@ impl RigidBodies {
         })
     }
 
-    /// The bodies to be pushed by a fluid, their mobilities, and whether a body has samples that the fluid meets.
+    /// The bodies to be pushed by a pressure grid, their mobilities, and whether it meets a body as one.
     pub(crate) fn immersed(&mut self) -> (&mut Bodies, &Mobilities, impl Fn(u32) -> bool) {
         let met = &self.met;
-        let counts = move |body: u32| met[body as usize];
+        let counts = move |body: u32| matches!(met[body as usize], Meeting::Samples | Meeting::Outline);
         (&mut self.bodies, &self.mobilities, counts)
     }
 

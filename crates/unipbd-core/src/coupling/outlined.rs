@@ -7,11 +7,15 @@ use crate::math::{Vector, Vector64, vector};
 use crate::particles::Particles;
 use crate::rigid::{Body, BodyKind, Pose};
 use crate::shapes::{Shape, edges};
-use crate::walls::{Outlines, Place};
+use crate::walls::{OutlineSpec, Outlines, Place};
 use std::f64::consts::PI;
 
 /// Bodies thinner than this, in spacings, keep samples: they cover too little of a kernel to hold a fluid.
 const THIN: f64 = 1.0;
+
+/// Static bodies of this thickness, in spacings, are walls of the pressure grid: two of its cells. Thinner ones could
+/// lie between the corners of cells.
+const WALL_OF_GRID: f64 = 4.0;
 
 /// How fluids and particles meet the bodies of a scene.
 #[derive(Clone, Copy, Debug)]
@@ -20,6 +24,20 @@ pub(crate) struct Met {
     pub first_sample: u32,
     /// Whether bodies that the fluid does not move are walls to it.
     pub outlines: bool,
+}
+
+/// How a fluid meets a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Meeting {
+    /// Not at all.
+    #[default]
+    None,
+    /// By samples among the particles.
+    Samples,
+    /// By its outline; the pressure grid moves it, or moves with it.
+    Outline,
+    /// By its outline, which is a wall of the pressure grid too.
+    FixedOutline,
 }
 
 /// Whether a body is a wall to fluids by its outline, where the scene lets it.
@@ -51,16 +69,31 @@ impl RigidBodies {
         self.outlines && first == end && !self.bodies.samples(body).is_empty()
     }
 
-    /// Finds the bodies that the fluid meets: bodies came or went.
+    /// Finds the bodies that the fluid meets: bodies came, changed or went.
     pub(super) fn find_met(&mut self) {
         let sampled = |body: u32| self.sample_ids[body as usize].0 < self.sample_ids[body as usize].1;
-        self.met = (0..self.bodies.len() as u32).map(|body| sampled(body) || self.by_outline(body)).collect();
+        let met = |body: u32| match (sampled(body), self.by_outline(body)) {
+            (true, _) => Meeting::Samples,
+            (_, true) if self.is_wall_of_grid(body) => Meeting::FixedOutline,
+            (_, true) => Meeting::Outline,
+            _ => Meeting::None,
+        };
+        self.met = (0..self.bodies.len() as u32).map(met).collect();
+    }
+
+    fn is_wall_of_grid(&self, body: u32) -> bool {
+        let view = &self.views()[body as usize];
+        view.kind == BodyKind::Static && thickness(view) >= WALL_OF_GRID * self.spacing
     }
 
     /// Takes the outlines that the fluid meets.
     pub(crate) fn set_outlines(&self, outlines: &mut Outlines) {
         let met = (0..self.bodies.len() as u32).filter(|&body| self.by_outline(body));
-        outlines.set(met.map(|body| (body, shape(&self.views()[body as usize]))));
+        outlines.set(met.map(|body| OutlineSpec {
+            body,
+            shape: shape(&self.views()[body as usize]),
+            fixed: self.met[body as usize] == Meeting::FixedOutline,
+        }));
         self.place_outlines(outlines);
     }
 
@@ -94,7 +127,7 @@ impl RigidBodies {
 
     /// Visits the places of the samples that bodies met by their outlines do not have: matter in their cells.
     pub(crate) fn each_filled(&self, mut visit: impl FnMut(Vector)) {
-        for body in (0..self.bodies.len() as u32).filter(|&body| self.by_outline(body)) {
+        for body in (0..self.bodies.len() as u32).filter(|&body| self.met[body as usize] == Meeting::Outline) {
             let pose = self.bodies.pose(body);
             self.bodies.samples(body).iter().for_each(|&sample| visit(vector(pose.apply(sample))));
         }

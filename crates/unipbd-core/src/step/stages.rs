@@ -88,7 +88,11 @@ impl World {
         }
         let mut immersed = parts.rigid.as_mut().map(RigidBodies::immersed);
         let bodies = immersed.as_mut().map(|(bodies, mobilities, counts)| Immersed { bodies, counts, mobilities });
-        grid.project(&mut parts.particles, (&parts.walls, bodies), self.clock.dt, parts.parallelism);
+        let around = (&parts.walls, &parts.outlines, bodies);
+        grid.project(&mut parts.particles, around, self.clock.dt, parts.parallelism);
+        if let Some((bodies, ..)) = immersed {
+            grid.push_outlines(&parts.outlines, bodies, self.clock.dt);
+        }
     }
 
     fn add_grid_wall_forces(&mut self) {

@@ -1,5 +1,6 @@
 //! Outlines of bodies as walls of the fluid: the part of a kernel inside them, its gradient, and who is inside.
 
+mod fixed;
 mod polygon;
 mod round;
 #[cfg(test)]
@@ -39,13 +40,25 @@ pub struct Outlines {
     upheld: Option<f64>,
     periodic: Periodic,
     spots: Vec<Spot>,
+    /// Advances whenever outlines come, go or are put elsewhere by an edit.
+    version: u64,
+}
+
+/// An outline to be taken.
+#[derive(Clone, Debug, PartialEq)]
+pub struct OutlineSpec {
+    /// Its body.
+    pub body: u32,
+    /// About the centre of mass.
+    pub shape: Shape,
+    /// Whether it never moves and is thick enough to be a wall of a grid.
+    pub fixed: bool,
 }
 
 /// One outline.
 #[derive(Clone, Debug)]
 struct Spot {
-    body: u32,
-    shape: Shape,
+    of: OutlineSpec,
     form: Form,
     /// At the start and at the end of the substep.
     places: [Place; 2],
@@ -74,7 +87,7 @@ impl Outlines {
     /// None yet, for this kernel and liquids of this spacing, if walls are to [uphold](super::Coverage::upholding) them
     /// [m].
     pub fn new(kernel: Kernel<WendlandC2>, upheld: Option<f64>, periodic: Periodic) -> Self {
-        Outlines { kernel, tables: None, upheld, periodic, spots: Vec::new() }
+        Outlines { kernel, tables: None, upheld, periodic, spots: Vec::new(), version: 0 }
     }
 
     /// Whether there are no outlines.
@@ -89,34 +102,35 @@ impl Outlines {
 
     /// Takes these outlines in place of the old ones: bodies in the order of their ids, and their shapes about their
     /// centres of mass.
-    pub fn set(&mut self, outlines: impl Iterator<Item = (u32, Shape)>) {
+    pub fn set(&mut self, outlines: impl Iterator<Item = OutlineSpec>) {
+        self.version += 1;
         let mut known = std::mem::take(&mut self.spots).into_iter().peekable();
         let reach = f64::from(self.kernel.radius());
-        for (body, shape) in outlines {
-            while known.next_if(|spot| spot.body < body).is_some() {}
-            if let Some(spot) = known.next_if(|spot| spot.body == body && spot.shape == shape) {
+        for of in outlines {
+            while known.next_if(|spot| spot.of.body < of.body).is_some() {}
+            if let Some(spot) = known.next_if(|spot| spot.of == of) {
                 self.spots.push(spot);
                 continue;
             }
             let tables = self.tables.get_or_insert_with(|| EdgeTables::new(&self.kernel, self.upheld));
-            let form = match &shape {
+            let form = match &of.shape {
                 Shape::Disc { radius } => Form::Round(Round::new(*radius, &self.kernel, tables)),
                 Shape::Polygon(corners) => Form::Polygon(Polygon::new(corners, reach)),
             };
             let place = Place { position: Vector64::ZERO, axis: Vector64::X };
-            let reach = real(shape.bounding_radius() + reach);
-            self.spots.push(Spot { body, shape, form, places: [place; 2], reach });
+            let reach = real(of.shape.bounding_radius() + reach);
+            self.spots.push(Spot { of, form, places: [place; 2], reach });
         }
     }
 
     /// Puts the outlines where their bodies are at the start and at the end of a substep.
     pub fn place(&mut self, places: impl Fn(u32) -> [Place; 2]) {
-        self.spots.iter_mut().for_each(|spot| spot.places = places(spot.body));
+        self.spots.iter_mut().for_each(|spot| spot.places = places(spot.of.body));
     }
 
     /// The body of an outline.
     pub fn body(&self, outline: usize) -> u32 {
-        self.spots[outline].body
+        self.spots[outline].of.body
     }
 
     /// The way from the origin of an outline to a point, the shortest where the domain repeats [m].
@@ -150,14 +164,13 @@ impl Outlines {
 
     /// Visits the points that lie inside outlines at the end of the substep, and the bodies.
     pub fn each_inside(&self, points: &[Vector], mut visit: impl FnMut(usize, u32)) {
-        let Some(tables) = &self.tables else { return };
         for outline in self.met(points, Moment::End) {
             let spot = &self.spots[outline];
             for (k, &x) in points.iter().enumerate() {
                 let mut inside = false;
-                spot.each_image(x, Moment::End, self.periodic, |x| inside |= spot.form.distance(x, tables) < 0.0);
+                spot.each_image(x, Moment::End, self.periodic, |x| inside |= spot.form.distance(x) < 0.0);
                 if inside {
-                    visit(k, spot.body);
+                    visit(k, spot.of.body);
                 }
             }
         }
@@ -255,14 +268,6 @@ impl Form {
         match self {
             Form::Polygon(polygon) => polygon.seen(x, tables),
             Form::Round(round) => round.seen(x),
-        }
-    }
-
-    fn distance(&self, x: Vector, tables: &EdgeTables) -> Real {
-        let _ = tables;
-        match self {
-            Form::Polygon(polygon) => polygon.distance(x),
-            Form::Round(round) => round.distance(x),
         }
     }
 

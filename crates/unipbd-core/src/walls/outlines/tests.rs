@@ -5,7 +5,7 @@ const RADIUS: f64 = 2.5;
 
 fn outline(shape: Shape, angle: f64, upheld: Option<f64>) -> Outlines {
     let mut outlines = Outlines::new(Kernel::new(RADIUS), upheld, Periodic::NONE);
-    outlines.set([(0, shape)].into_iter());
+    outlines.set([OutlineSpec { body: 0, shape, fixed: true }].into_iter());
     let place = Place { position: Vector64::ZERO, axis: Vector64::from_angle(angle) };
     outlines.place(|_| [place; 2]);
     outlines
@@ -46,8 +46,18 @@ fn points() -> impl Iterator<Item = Vector> {
 
 #[test]
 fn outlines_cover_what_lies_inside() {
-    let vessel = polygon(&[[-4.0, -4.0], [4.0, -4.0], [4.0, 4.0], [2.5, 4.0], [2.5, -2.0], [-2.5, -2.0], [-2.5, 4.0], [-4.0, 4.0]]);
-    for shape in [star(), vessel, Shape::Disc { radius: 3.0 }, Shape::Disc { radius: 0.8 }, Shape::rectangle(7.0, 0.7)] {
+    let vessel = polygon(&[
+        [-4.0, -4.0],
+        [4.0, -4.0],
+        [4.0, 4.0],
+        [2.5, 4.0],
+        [2.5, -2.0],
+        [-2.5, -2.0],
+        [-2.5, 4.0],
+        [-4.0, 4.0],
+    ]);
+    for shape in [star(), vessel, Shape::Disc { radius: 3.0 }, Shape::Disc { radius: 0.8 }, Shape::rectangle(7.0, 0.7)]
+    {
         let outlines = outline(shape.clone(), 0.0, None);
         for x in points() {
             let (part, expected) = (f64::from(outlines.coverage(x, Moment::End).0), brute_force(&shape, x));
@@ -96,7 +106,7 @@ fn a_long_edge_at_any_angle_is_a_wall() {
 fn an_outline_over_a_whole_period_has_no_ends() {
     let axis = crate::periodic::PeriodicAxis { from: 0.0, length: 20.0 };
     let mut outlines = Outlines::new(Kernel::new(RADIUS), None, Periodic { x: Some(axis), y: None });
-    outlines.set([(0, Shape::rectangle(20.0, 4.0))].into_iter());
+    outlines.set([OutlineSpec { body: 0, shape: Shape::rectangle(20.0, 4.0), fixed: true }].into_iter());
     outlines.place(|_| [Place { position: Vector64::new(10.0, 0.0), axis: Vector64::X }; 2]);
     let expected = Coverage::new(&Kernel::new(RADIUS)).behind(0.7);
     for x in [0.0, 0.3, 7.0, 19.9] {
