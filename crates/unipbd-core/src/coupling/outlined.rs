@@ -92,9 +92,11 @@ impl RigidBodies {
         outlines.set(met.map(|body| OutlineSpec {
             body,
             shape: shape(&self.views()[body as usize]),
+            still: self.views()[body as usize].kind == BodyKind::Static,
             fixed: self.met[body as usize] == Meeting::FixedOutline,
         }));
         self.place_outlines(outlines);
+        outlines.find_touching();
     }
 
     /// Puts outlines where their bodies are, and where they are predicted to be.

@@ -52,12 +52,16 @@ impl Outlines {
 }
 
 impl Spot {
-    /// Visits the sides in the world, counter-clockwise.
+    /// Visits the sides in the world against which no body lies, counter-clockwise.
     fn each_side(&self, piece: Real, mut visit: impl FnMut([Vector64; 2])) {
         let place = self.places[Moment::End as usize];
         let world = |corner: Vector64| place.position + place.axis.rotate(corner);
         match &self.of.shape {
-            Shape::Polygon(corners) => edges(corners).for_each(|(from, to)| visit([world(from), world(to)])),
+            Shape::Polygon(_) => {
+                let sides =
+                    edges(&self.corners).enumerate().filter(|(k, _)| !self.inner.get(*k).is_some_and(|&inner| inner));
+                sides.for_each(|(_, (from, to))| visit([world(from), world(to)]));
+            }
             Shape::Disc { radius } => {
                 let count = (TAU * radius / f64::from(piece)).ceil().max(12.0);
                 let corner = |k: f64| world(Vector64::from_angle(TAU * k / count) * *radius);

@@ -5,6 +5,7 @@ mod polygon;
 mod round;
 #[cfg(test)]
 mod tests;
+mod touching;
 
 use super::EdgeTables;
 use crate::kernel::{Kernel, WendlandC2};
@@ -51,6 +52,8 @@ pub struct OutlineSpec {
     pub body: u32,
     /// About the centre of mass.
     pub shape: Shape,
+    /// Whether it never moves.
+    pub still: bool,
     /// Whether it never moves and is thick enough to be a wall of a grid.
     pub fixed: bool,
 }
@@ -60,6 +63,10 @@ pub struct OutlineSpec {
 struct Spot {
     of: OutlineSpec,
     form: Form,
+    /// Corners about the centre of mass, with those where sides begin that lie against other bodies, and which sides
+    /// these are; empty for a disc.
+    corners: Vec<Vector64>,
+    inner: Vec<bool>,
     /// At the start and at the end of the substep.
     places: [Place; 2],
     /// Points farther than this from the origin see nothing of it [m].
@@ -113,13 +120,13 @@ impl Outlines {
                 continue;
             }
             let tables = self.tables.get_or_insert_with(|| EdgeTables::new(&self.kernel, self.upheld));
-            let form = match &of.shape {
-                Shape::Disc { radius } => Form::Round(Round::new(*radius, &self.kernel, tables)),
-                Shape::Polygon(corners) => Form::Polygon(Polygon::new(corners, reach)),
+            let (form, corners) = match &of.shape {
+                Shape::Disc { radius } => (Form::Round(Round::new(*radius, &self.kernel, tables)), Vec::new()),
+                Shape::Polygon(corners) => (Form::Polygon(Polygon::new(corners, &[], reach)), corners.clone()),
             };
             let place = Place { position: Vector64::ZERO, axis: Vector64::X };
             let reach = real(of.shape.bounding_radius() + reach);
-            self.spots.push(Spot { of, form, places: [place; 2], reach });
+            self.spots.push(Spot { of, form, corners, inner: Vec::new(), places: [place; 2], reach });
         }
     }
 

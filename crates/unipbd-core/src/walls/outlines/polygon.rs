@@ -22,6 +22,10 @@ struct Edge {
     after: Vector,
     first: Turn,
     last: Turn,
+    /// Whether another body lies against it: it is no surface.
+    inner: bool,
+    /// Whether that holds for the edges before and after it.
+    beside: [bool; 2],
 }
 
 /// The edges of a polygon, and those within the kernel radius of each cell around it.
@@ -48,15 +52,16 @@ pub(super) struct Seen {
 }
 
 impl Polygon {
-    /// A simple polygon of counter-clockwise corners; points farther than `reach` from it see nothing of it [m].
-    pub fn new(corners: &[Vector64], reach: f64) -> Polygon {
+    /// A simple polygon of counter-clockwise corners; points farther than `reach` from it see nothing of it [m]. `inner`
+    /// tells the edges against which other bodies lie.
+    pub fn new(corners: &[Vector64], inner: &[bool], reach: f64) -> Polygon {
         let (low, high) = corners.iter().fold((corners[0], corners[0]), |(low, high), c| (low.min(*c), high.max(*c)));
         let (low, high) = (low - reach, high + reach);
         let extent = high - low;
         let cell = reach.max((extent.x * extent.y / MOST_CELLS).sqrt());
         let count = |extent: f64| ((extent / cell).ceil() as usize).max(1);
         let mut polygon = Polygon {
-            edges: list(corners),
+            edges: list(corners, inner),
             low: vector(low),
             inverse_cell: real(1.0 / cell),
             columns: count(extent.x),
@@ -65,6 +70,7 @@ impl Polygon {
             near: Vec::new(),
             inside: Vec::new(),
         };
+        let shape = crate::shapes::Shape::Polygon(corners.to_vec());
         for place in 0..polygon.columns * polygon.rows {
             let corner = low + Vector64::new((place % polygon.columns) as f64, (place / polygon.columns) as f64) * cell;
             let (middle, half) = (corner + 0.5 * cell, 0.5 * cell * std::f64::consts::SQRT_2);
@@ -74,7 +80,6 @@ impl Polygon {
                     polygon.near.push(number as u32);
                 }
             }
-            let shape = crate::shapes::Shape::Polygon(corners.to_vec());
             polygon.starts.push(polygon.near.len() as u32);
             polygon.inside.push(shape.contains(middle));
         }
@@ -105,7 +110,10 @@ impl Polygon {
         let (mut part, mut gradient) = (0.0, Vector::ZERO);
         self.each_flow(near, x, tables, |added, slope, edge, _| {
             part += added;
-            gradient += edge.out * slope;
+            // The gradients on both sides of a joint cancel, and would only be felt as a force between the bodies.
+            if !edge.inner {
+                gradient += edge.out * slope;
+            }
         });
         // About a point inside the flows leave out the whole of the kernel.
         if part < -UNCLEAR || (part < UNCLEAR && self.signed(near, x) < 0.0) {
@@ -118,7 +126,7 @@ impl Polygon {
     pub fn pushes(&self, x: Vector, tables: &EdgeTables, mut visit: impl FnMut(Vector, Vector)) {
         if let Some(Ok(near)) = self.near(x) {
             self.each_flow(near, x, tables, |_, slope, edge, distance| {
-                if slope != 0.0 {
+                if slope != 0.0 && !edge.inner {
                     visit(edge.out * slope, edge.out * distance);
                 }
             });
@@ -139,19 +147,19 @@ impl Polygon {
             let (seen, slope) = tables.stretch.at(f64::from(distance));
             (real(seen), real(slope))
         };
-        let moved = |distance: Real| stretch(distance).0 - distance;
+        let moved = |distance: Real, inner: bool| if inner { 0.0 } else { stretch(distance).0 - distance };
         for edge in near.iter().map(|&number| &self.edges[number as usize]) {
             let apart = x - edge.from;
             let distance = apart.dot(edge.out);
-            let (seen, grown) = stretch(distance);
+            let (seen, grown) = if edge.inner { (distance, 1.0) } else { stretch(distance) };
             if seen.abs() >= tables.radius() {
                 continue;
             }
             let from = -apart.dot(edge.along);
             let to = from + edge.length;
             let own = seen - distance;
-            let before = moved(apart.dot(edge.before));
-            let after = moved((apart - edge.along * edge.length).dot(edge.after));
+            let before = moved(apart.dot(edge.before), edge.beside[0]);
+            let after = moved((apart - edge.along * edge.length).dot(edge.after), edge.beside[1]);
             let ends = [
                 moved_corner(from, own, before, edge.first.back(), tables.radius()),
                 moved_corner(to, own, after, edge.last, tables.radius()),
@@ -189,9 +197,10 @@ impl Polygon {
     }
 }
 
-fn list(corners: &[Vector64]) -> Vec<Edge> {
+fn list(corners: &[Vector64], inner: &[bool]) -> Vec<Edge> {
     let count = corners.len();
     let direction = |k: usize| (corners[(k + 1) % count] - corners[k % count]).normalize();
+    let is_inner = |k: usize| inner.get(k).copied().unwrap_or(false);
     let out = |along: Vector64| vector(Vector64::new(along.y, -along.x));
     let edge = |k: usize| {
         let (before, along, after) = (direction(k + count - 1), direction(k), direction(k + 1));
@@ -204,6 +213,8 @@ fn list(corners: &[Vector64]) -> Vec<Edge> {
             after: out(after),
             first: Turn::new(vector(before), vector(along)),
             last: Turn::new(vector(along), vector(after)),
+            inner: is_inner(k),
+            beside: [is_inner((k + count - 1) % count), is_inner((k + 1) % count)],
         }
     };
     (0..count).map(edge).collect()

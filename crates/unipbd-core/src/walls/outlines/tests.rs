@@ -5,7 +5,7 @@ const RADIUS: f64 = 2.5;
 
 fn outline(shape: Shape, angle: f64, upheld: Option<f64>) -> Outlines {
     let mut outlines = Outlines::new(Kernel::new(RADIUS), upheld, Periodic::NONE);
-    outlines.set([OutlineSpec { body: 0, shape, fixed: true }].into_iter());
+    outlines.set([OutlineSpec { body: 0, shape, still: true, fixed: true }].into_iter());
     let place = Place { position: Vector64::ZERO, axis: Vector64::from_angle(angle) };
     outlines.place(|_| [place; 2]);
     outlines
@@ -106,7 +106,7 @@ fn a_long_edge_at_any_angle_is_a_wall() {
 fn an_outline_over_a_whole_period_has_no_ends() {
     let axis = crate::periodic::PeriodicAxis { from: 0.0, length: 20.0 };
     let mut outlines = Outlines::new(Kernel::new(RADIUS), None, Periodic { x: Some(axis), y: None });
-    outlines.set([OutlineSpec { body: 0, shape: Shape::rectangle(20.0, 4.0), fixed: true }].into_iter());
+    outlines.set([OutlineSpec { body: 0, shape: Shape::rectangle(20.0, 4.0), still: true, fixed: true }].into_iter());
     outlines.place(|_| [Place { position: Vector64::new(10.0, 0.0), axis: Vector64::X }; 2]);
     let expected = Coverage::new(&Kernel::new(RADIUS)).behind(0.7);
     for x in [0.0, 0.3, 7.0, 19.9] {
@@ -128,4 +128,22 @@ fn points_inside_are_found() {
         found[k] = true;
     });
     assert!(points.iter().zip(found).all(|(x, found)| found == shape.contains(wide(*x))));
+}
+
+#[test]
+fn sides_on_which_two_outlines_touch_are_not_seen() {
+    let whole = outline(Shape::rectangle(12.0, 6.0), 0.0, Some(1.0));
+    let mut halves = Outlines::new(Kernel::new(RADIUS), Some(1.0), Periodic::NONE);
+    let half = |body| OutlineSpec { body, shape: Shape::rectangle(6.0, 6.0), still: true, fixed: true };
+    halves.set([half(0), half(1)].into_iter());
+    let place = |x: f64| [Place { position: Vector64::new(x, 0.0), axis: Vector64::X }; 2];
+    halves.place(|body| place(if body == 0 { -3.0 } else { 3.0 }));
+    halves.find_touching();
+    for x in [-2.0, -0.3, -0.1, 0.1, 0.4, 1.7] {
+        let at = Vector::new(x, 3.4);
+        let ((part, gradient), (expected, along)) = (halves.coverage(at, Moment::End), whole.coverage(at, Moment::End));
+        assert!((part - expected).abs() < 1e-4, "{x}: {part} {expected}");
+        assert!((gradient - along).length() < 1e-4, "{x}: {gradient} {along}");
+        halves.each_near(at, Moment::End, |near| assert!(near.gradient.x.abs() < 1e-5, "no side to a joint"));
+    }
 }
