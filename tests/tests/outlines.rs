@@ -308,3 +308,45 @@ fn outlines_have_no_samples() {
     let solver = drum("off");
     assert!(solver.phases().iter().all(|&phase| phase != Phase::Rigid));
 }
+
+#[test]
+fn thin_floors_hold_water_though_less_exactly() {
+    for grid in GRID {
+        for thickness in [0.5, 1.0, 2.0, 3.0, 6.0] {
+            let thick = 0.05 * thickness;
+            let scene = scene(&format!(
+                r#"
+                spacing = 0.05
+                [solver]
+                pressure_grid = "{grid}"
+                [[liquid]]
+                name = "water"
+                [[block]]
+                material = "water"
+                min = [0.0, 0.0]
+                max = [1.0, 0.6]
+                [[tank]]
+                min = [0.0, -3.0]
+                max = [1.0, 3.0]
+                open = ["top", "bottom"]
+                [[body]]
+                name = "floor"
+                kind = "static"
+                size = [1.4, {thick}]
+                position = [0.5, {}]
+                "#,
+                -0.5 * thick
+            ));
+            let mut solver = build(&scene, 2);
+            let warned = !solver.take_events().is_empty();
+            let force = -forces(&mut solver)[0].y / (9.81 * 1000.0 * 0.6);
+            let lost = fluid(&solver).filter(|(x, _)| x.y < 0.0).count();
+            let what = format!("{thickness} dx thick, grid {grid}");
+            bars("thin floor", |bars| {
+                bars.at_most(&format!("particles lost, {what}"), lost as f64, 0.0);
+                bars.within(&format!("force over the weight, {what}"), force, 0.97, 1.03);
+                bars.within(&format!("warned, {what}"), f64::from(u8::from(warned)), 0.0, 1.0);
+            });
+        }
+    }
+}

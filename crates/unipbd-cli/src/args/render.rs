@@ -116,7 +116,7 @@ fn background() -> impl TypedValueParser<Value = Background> {
     names.map(|name| if name == "light" { Background::Light } else { Background::Dark })
 }
 
-fn finite(text: &str) -> Result<f64, String> {
+pub(super) fn finite(text: &str) -> Result<f64, String> {
     number(text).ok_or_else(|| "expected a number".into())
 }
 
