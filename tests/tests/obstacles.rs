@@ -6,7 +6,7 @@ use unipbd_core::rigid::Body;
 use unipbd_core::{Phase, Solver, Vector64};
 use unipbd_tests::{bars, build, run, scene};
 
-/// A trough with slanted sides, more than a thousand litres of water in it, and a heavy box on its floor.
+/// A trough with slanted sides, eight hundred litres of water in it, and a heavy box on its floor.
 const TROUGH: &str = r#"
 spacing = 0.05
 [solver]
@@ -17,7 +17,7 @@ xsph = 0.05
 [[block]]
 material = "water"
 min = [-0.5, 0.0]
-max = [0.5, 1.2]
+max = [0.5, 0.8]
 [[body]]
 name = "trough"
 kind = "static"
