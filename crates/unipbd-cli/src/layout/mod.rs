@@ -60,7 +60,7 @@ mod tests {
         let layout = layout(&setting, view, &topics);
         let panel = &layout["configById"][VIEW_PANEL];
         let distance = panel["cameraState"]["distance"].as_f64().unwrap();
-        assert!(distance * ASPECT >= 6.0 && distance >= 2.0 && distance < 6.0, "{distance}");
+        assert!(distance * ASPECT >= 6.0 && (2.0..6.0).contains(&distance), "{distance}");
         assert_eq!(panel["cameraState"]["targetOffset"], json!([2.0, 1.0, 0.0]));
         assert_eq!(panel["cameraState"]["perspective"], json!(false));
         let size = panel["topics"]["/particles"]["pointSize"].as_f64().unwrap();
