@@ -37,7 +37,7 @@ fn passes(criterion: &mut Criterion) {
             group.bench_function(BenchmarkId::new(name, rows), |bencher| bencher.iter(|| work(&mut vectors, &mut a)));
         };
         bench("density", &mut |gradient, value| {
-            let input = DensityInput { positions: &set.x, gradient_positions: None, weights: one };
+            let input = DensityInput { positions: &set.x, gradient_positions: None, weights: one, unit: 1.0 };
             density(pairs, kernel, input, DensityOutput { value, gradient, response: &mut b });
         });
         bench("correction", &mut |out, _| correction(pairs, kernel, &set.x, &set.field, &mut r1, out));

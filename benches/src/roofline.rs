@@ -157,9 +157,13 @@ fn pass_entries<'a>(case: &'a Case, level: Level, parallelism: Parallelism, tag:
     let traits: Vec<_> = case.field.iter().map(|&value| Vector::new(0.1, 1.0 + value)).collect();
     let one = Weights::Uniform(1.0);
     let [mut r1, mut r2, mut r3, mut r4] = std::array::from_fn(|_| Records::default());
-    let input = DensityInput { positions: &case.x, gradient_positions: None, weights: one };
-    let split =
-        DensityInput { gradient_positions: Some(&case.v), weights: Weights::Column(&case.field), positions: &case.x };
+    let input = DensityInput { positions: &case.x, gradient_positions: None, weights: one, unit: 1.0 };
+    let split = DensityInput {
+        gradient_positions: Some(&case.v),
+        weights: Weights::Column(&case.field),
+        positions: &case.x,
+        unit: 1.0,
+    };
     vec![
         timed(format!("density      {tag}"), move || {
             density(pairs, kernel, input, DensityOutput { value: &mut a, gradient: &mut g, response: &mut b });

@@ -48,7 +48,12 @@ impl Step {
         let pairs = Pairs::new(&self.list, Periodic::NONE, parallelism);
         let kernel = WendlandC2::new(f64::from(self.radius));
         for _ in 0..ITERATIONS {
-            let input = DensityInput { positions: &self.x, gradient_positions: None, weights: Weights::Uniform(1.0) };
+            let input = DensityInput {
+                positions: &self.x,
+                gradient_positions: None,
+                weights: Weights::Uniform(1.0),
+                unit: 1.0,
+            };
             let (value, gradient, response) = (&mut self.value[..], &mut self.gradient[..], &mut self.response[..]);
             density(pairs, kernel, input, DensityOutput { value, gradient, response });
             correction(pairs, kernel, &self.x, &self.value, &mut self.records, &mut self.out);

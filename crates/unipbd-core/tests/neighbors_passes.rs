@@ -91,7 +91,7 @@ fn all_passes(set: &Set, kernel: WendlandC2, level: Level, parallelism: Parallel
     let mut results = Vec::new();
     for weights in [Weights::Uniform(0.7), Weights::Column(&set.weights)] {
         for gradient_positions in [None, Some(&set.start[..])] {
-            let input = DensityInput { positions: &set.x, gradient_positions, weights };
+            let input = DensityInput { positions: &set.x, gradient_positions, weights, unit: 1.0 };
             density(pairs, kernel, input, DensityOutput { value: &mut a, gradient: &mut g, response: &mut b });
             results.push(("density", [a.clone(), flat(&g), b.clone()].concat()));
         }

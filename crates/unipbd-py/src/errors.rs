@@ -72,6 +72,11 @@ pub fn solver(py: Python<'_>, error: &SolverError) -> PyErr {
             fields.set_item("particle", particle)?;
             fields.set_item("material", material)?;
         }
+        if let SolverError::Body { step, time, .. } = error {
+            fields.set_item("stage", "end_of_frame")?;
+            fields.set_item("step", step)?;
+            fields.set_item("time", time)?;
+        }
         if let SolverError::Diverged { stage, step, time, particle, material, .. } = error {
             fields.set_item("stage", stage)?;
             fields.set_item("step", step)?;

@@ -30,9 +30,8 @@ pub(super) fn build(scene: &Scene) -> (Bodies, Contacts) {
 
 /// The contact solver of a scene, without joints.
 pub(super) fn contacts(scene: &Scene) -> Contacts {
-    let ContactDescription { method, relaxation, iterations, friction_rule, sleep, sleep_speed, sleep_delay } =
-        scene.contacts;
-    let sleep = sleep.then_some(SleepSettings { speed: sleep_speed, delay: sleep_delay });
+    let ContactDescription { method, relaxation, iterations, friction_rule, sleep, sleep_speed, .. } = scene.contacts;
+    let sleep = sleep.then_some(SleepSettings { speed: sleep_speed, delay: scene.contacts.rest_time(scene.fps) });
     let settings =
         ContactSettings { method, relaxation, iterations, friction_rule, sleep, ..ContactSettings::default() };
     match scene.legacy.changes_contacts() {

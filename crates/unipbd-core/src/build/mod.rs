@@ -7,7 +7,7 @@ mod ropes;
 mod waves;
 
 use crate::constraints::{Adhesion, ConstraintGroup, ShapeMatching};
-use crate::coupling::RigidBodies;
+use crate::coupling::{Met, RigidBodies, is_outlined};
 use crate::effects::{
     Baroclinic, Cohesion, Conduction, Drag, DragLaw, Effect, Heating, ShearViscosity, SmokeAdvection,
     VorticityConfinement, Xsph,
@@ -102,14 +102,15 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     let passes = 2.0 * f64::from(scene.solver.iterations) + effects.len() as f64;
     let cost = ListCost { radius: scene.solver.kernel_radius, passes };
     let reach = real(scene.solver.kernel_radius * scene.spacing);
-    let density = density::of(scene);
+    let density = density::of(scene, periodic);
     let pressure_scale = density.pressure_scale;
-    let groups = groups(scene, density, ropes, rigid.as_ref());
+    let groups = groups(scene, density.group, ropes, rigid.as_ref());
     Parts {
         particles,
         materials: shown_materials(scene),
         forces: scene.materials().map(|material| body_force(material, scene)).collect(),
         walls: Walls::new(scene),
+        outlines: density.outlines,
         neighbors: Neighbors::new(periodic, reach, real(least_skin), cost),
         search_positions,
         pressure_grid: scene.uses_pressure_grid().then(|| pressure_grid(scene)),
@@ -148,7 +149,7 @@ fn pressure_grid(scene: &Scene) -> PressureGrid {
 
 fn groups(
     scene: &Scene,
-    density: density::Built,
+    density: Box<dyn ConstraintGroup>,
     ropes: ropes::Ropes,
     rigid: Option<&RigidBodies>,
 ) -> Vec<Box<dyn ConstraintGroup>> {
@@ -158,7 +159,7 @@ fn groups(
         groups.push(Box::new(adhesion));
     }
     if scene.materials().any(|material| material.phase().is_fluid()) {
-        groups.push(density.group);
+        groups.push(density);
     }
     if let Some(rigid) = rigid.filter(|rigid| rigid.any_matched()) {
         groups.push(Box::new(ShapeMatching::new(rigid.members(), scene.spacing, scene.contacts.friction_rule)));
@@ -214,11 +215,15 @@ fn rigid_bodies(scene: &Scene, particles: &mut Particles) -> Option<RigidBodies>
     let (bodies, contacts) = bodies::build(scene);
     let fluid = scene.materials().any(|material| material.phase().is_fluid());
     let seen = fluid || scene.body.iter().any(|body| body.solver == BodySolver::ShapeMatching);
-    let first_sample = seen.then(|| particles.ids_given());
+    let outlines = fluid && lets_outlines(scene);
+    let met = seen.then(|| Met { first_sample: particles.ids_given(), outlines });
     if seen {
         let material = scene.materials().count() as MaterialIndex - 1;
         for body in 0..bodies.len() as u32 {
             let view = &bodies.views()[body as usize];
+            if outlines && is_outlined(view, scene.spacing) {
+                continue;
+            }
             let matched = bodies.elasticity(body as usize).is_some();
             let inverse_mass = if matched { real(view.samples.len() as f64 / view.mass) } else { 0.0 };
             for &sample in bodies.samples(body) {
@@ -234,7 +239,15 @@ fn rigid_bodies(scene: &Scene, particles: &mut Particles) -> Option<RigidBodies>
             }
         }
     }
-    Some(RigidBodies::new(bodies, contacts, first_sample, scene.spacing))
+    Some(RigidBodies::new(bodies, contacts, met, scene.spacing))
+}
+
+/// Whether bodies that no fluid moves are walls to it by their outlines. What looks for samples of bodies still finds
+/// them: adhesion, bodies of particles, sleep, the options of papers.
+fn lets_outlines(scene: &Scene) -> bool {
+    let adheres = scene.liquid.iter().any(|liquid| liquid.adhesion != 0.0);
+    let matched = scene.body.iter().any(|body| body.solver == BodySolver::ShapeMatching);
+    !(adheres || matched || scene.solver.sleep || scene.legacy.changes_density())
 }
 
 /// The initial particles of a scene.

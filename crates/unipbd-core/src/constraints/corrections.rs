@@ -11,6 +11,25 @@ pub(crate) struct CorrectionParts {
     pub grid_shifts: bool,
     /// Number of measured walls.
     pub walls: usize,
+    /// Number of outlines of bodies.
+    pub outlines: usize,
+}
+
+/// What a fluid does to a body through its outline.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct OutlineLoad {
+    /// Force times dt^2 [kg m].
+    pub force: Vector64,
+    /// Torque about the origin of the outline, times dt^2 [kg m^2].
+    pub torque: f64,
+}
+
+impl OutlineLoad {
+    /// Adds a force times dt^2 [kg m] with this arm [m].
+    pub fn add(&mut self, force: Vector64, arm: Vector64) {
+        self.force += force;
+        self.torque += arm.perp_dot(force);
+    }
 }
 
 /// The displacements and forces that a group asks for. They are summed, then applied by the loop at once.
@@ -21,6 +40,7 @@ pub struct Corrections {
     parts: CorrectionParts,
     load: Vec<Vector>,
     wall_load: Vec<Vector64>,
+    outline_load: Vec<OutlineLoad>,
 }
 
 impl Corrections {
@@ -76,6 +96,16 @@ impl Corrections {
         &mut self.wall_load
     }
 
+    /// Loads of the outlines of bodies; empty where a fluid meets none.
+    pub fn outline_loads(&self) -> &[OutlineLoad] {
+        &self.outline_load
+    }
+
+    /// Loads of the outlines of bodies, to be written.
+    pub fn outline_loads_mut(&mut self) -> &mut [OutlineLoad] {
+        &mut self.outline_load
+    }
+
     pub(crate) fn memory_bytes(&self) -> usize {
         held(&self.displacement) + held(&self.shift) + held(&self.load) + held(&self.wall_load)
     }
@@ -99,5 +129,7 @@ impl Corrections {
         self.load.resize(if self.parts.loads { listed } else { 0 }, Vector::ZERO);
         self.wall_load.clear();
         self.wall_load.resize(self.parts.walls, Vector64::ZERO);
+        self.outline_load.clear();
+        self.outline_load.resize(self.parts.outlines, OutlineLoad::default());
     }
 }

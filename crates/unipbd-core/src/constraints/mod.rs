@@ -18,7 +18,7 @@ use std::ops::BitOr;
 pub use adhesion::Adhesion;
 pub use batch::{Batch, Constraint};
 pub(crate) use corrections::CorrectionParts;
-pub use corrections::Corrections;
+pub use corrections::{Corrections, OutlineLoad};
 pub use density::{Density, DensityMaterial, DensitySettings};
 pub use distance::{Distance, Tether};
 pub use shape_matching::{Member, ShapeMatching};
@@ -29,7 +29,7 @@ use crate::parallel::Parallelism;
 use crate::particles::Particles;
 use crate::passes::Pairs;
 use crate::rows::RowIndex;
-use crate::walls::Walls;
+use crate::walls::{Outlines, Walls};
 
 /// The data that a group needs from the loop; data that no group needs is not computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -77,6 +77,8 @@ pub struct Substep<'a> {
     pub neighbors: &'a Neighbors,
     /// Static walls.
     pub walls: &'a Walls,
+    /// Outlines of bodies that are walls too.
+    pub outlines: &'a Outlines,
     /// How to spread work over threads.
     pub parallelism: Parallelism,
 }

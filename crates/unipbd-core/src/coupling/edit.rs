@@ -1,6 +1,6 @@
 //! Bodies and joints that come, change and go between two frames.
 
-use super::{RigidBodies, near};
+use super::{RigidBodies, is_outlined, near};
 use crate::math::{Vector, Vector64, vector};
 use crate::particles::{NewParticle, Particles};
 use crate::phase::{MaterialIndex, Phase};
@@ -20,7 +20,8 @@ impl RigidBodies {
         let Ok(body) = self.bodies.add(spec) else { return };
         self.bodies.rebase(body, time);
         let first = particles.ids_given();
-        if let Some(material) = material.filter(|_| self.seen) {
+        let outlined = self.outlines && is_outlined(&self.bodies.views()[body as usize], spacing);
+        if let Some(material) = material.filter(|_| self.seen && !outlined) {
             let pose = self.bodies.pose(body);
             for &sample in self.bodies.samples(body) {
                 let place = pose.apply(sample);
@@ -36,6 +37,7 @@ impl RigidBodies {
         }
         self.sample_ids.push((first, particles.ids_given()));
         self.near.push(near(&self.bodies.views()[body as usize], self.seen, spacing));
+        self.find_met();
     }
 
     /// Takes a body away with its joints; returns the ids of its samples, to be removed, and of the ends of ropes that
@@ -49,6 +51,7 @@ impl RigidBodies {
         let loose = self.tied.iter().filter(|tied| tied.body == body).map(|tied| tied.id).collect();
         self.tied.retain(|tied| tied.body != body);
         self.bodies.remove(body);
+        self.find_met();
         (samples, loose)
     }
 
@@ -68,6 +71,7 @@ impl RigidBodies {
     pub(crate) fn change_body(&mut self, body: u32, change: &BodyChange) {
         self.contacts.wake_neighbors(&mut self.bodies, body);
         self.bodies.change(body, change);
+        self.find_met();
     }
 
     /// Pushes a body by an impulse [N s] at a point [m].

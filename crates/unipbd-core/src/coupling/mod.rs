@@ -3,6 +3,7 @@
 
 mod demand;
 mod edit;
+mod outlined;
 mod push_out;
 mod saved;
 mod soft_bodies;
@@ -12,6 +13,8 @@ use crate::particles::Particles;
 use crate::rigid::contact::{Contacts, Joint, JointKind};
 use crate::rigid::{Bodies, Body, HeldRow, Mobilities};
 use crate::rows::RowIndex;
+use outlined::Meeting;
+pub(crate) use outlined::{Met, is_outlined};
 use push_out::Penetration;
 
 /// A little more than half the diagonal of a lattice cell [spacings].
@@ -26,6 +29,15 @@ pub struct RigidBodies {
     sample_ids: Vec<(u32, u32)>,
     /// Whether a fluid, or particles, meet bodies through their samples.
     seen: bool,
+    /// Whether bodies that the fluid does not move are walls to it, and have no samples.
+    #[serde(skip)]
+    outlines: bool,
+    /// How the fluid meets each body.
+    #[serde(skip)]
+    met: Vec<Meeting>,
+    /// Distance of samples [m].
+    #[serde(skip)]
+    spacing: f64,
     /// Distance from a sample within which a particle may be inside the body, by body [m].
     near: Vec<Real>,
     /// Path in a substep, of a particle or a body, from which on the way counts and not the place alone [m].
@@ -67,12 +79,14 @@ struct Carried {
 impl RigidBodies {
     /// Bodies whose samples have consecutive ids from `first_sample`, body by body.
     /// Without a fluid the samples have no use: then there are none.
-    pub(crate) fn new(bodies: Bodies, contacts: Contacts, first_sample: Option<u32>, spacing: f64) -> Self {
-        let (mut next, seen) = (first_sample.unwrap_or(0), first_sample.is_some());
+    pub(crate) fn new(bodies: Bodies, contacts: Contacts, met: Option<Met>, spacing: f64) -> Self {
+        let (mut next, seen) = (met.map_or(0, |met| met.first_sample), met.is_some());
+        let outlines = met.is_some_and(|met| met.outlines);
         let mut sample_ids = Vec::new();
         for body in bodies.views() {
             let first = next;
-            next += if seen { body.samples.len() as u32 } else { 0 };
+            let outlined = outlines && is_outlined(body, spacing);
+            next += if seen && !outlined { body.samples.len() as u32 } else { 0 };
             sample_ids.push((first, next));
         }
         let near = bodies.views().iter().map(|body| near(body, seen, spacing)).collect();
@@ -81,6 +95,9 @@ impl RigidBodies {
             contacts,
             sample_ids,
             seen,
+            outlines,
+            met: Vec::new(),
+            spacing,
             near,
             far: (0.5 * spacing) as Real,
             penetrations: Vec::new(),
@@ -90,6 +107,7 @@ impl RigidBodies {
             mobilities: Mobilities::default(),
         };
         rigid.list_matched(spacing);
+        rigid.find_met();
         rigid
     }
 
@@ -128,9 +146,10 @@ impl RigidBodies {
         self.seen
     }
 
-    /// Whether particles move with the bodies: samples that a fluid meets, or ends of ropes.
+    /// Whether particles move with the bodies, samples that a fluid meets or ends of ropes, or a fluid meets their
+    /// outlines.
     pub(crate) fn has_followers(&self) -> bool {
-        self.sample_ids.iter().any(|(first, end)| first < end) || !self.tied.is_empty()
+        self.met.iter().any(|met| *met != Meeting::None) || !self.tied.is_empty()
     }
 
     /// Finds contacts, predicts the bodies and applies the impulses kept from the last substep.
@@ -178,10 +197,10 @@ impl RigidBodies {
         })
     }
 
-    /// The bodies to be pushed by a fluid, their mobilities, and whether a body has samples that the fluid meets.
+    /// The bodies to be pushed by a pressure grid, their mobilities, and whether it meets a body as one.
     pub(crate) fn immersed(&mut self) -> (&mut Bodies, &Mobilities, impl Fn(u32) -> bool) {
-        let ids = &self.sample_ids;
-        let counts = move |body: u32| ids[body as usize].0 < ids[body as usize].1;
+        let met = &self.met;
+        let counts = move |body: u32| matches!(met[body as usize], Meeting::Samples | Meeting::Outline);
         (&mut self.bodies, &self.mobilities, counts)
     }
 

@@ -13,7 +13,7 @@ use crate::phase::Phase;
 use crate::rigid::{Body, InverseMass};
 use crate::rows::RowIndex;
 use crate::shapes::{Nearest, Shape, first_crossing, nearest_on_polygon};
-use crate::walls::Walls;
+use crate::walls::{Outlines, Walls};
 
 /// How often a path that was turned out of one body is tried against the others: corners need two. In the
 /// second half of the turns, only against bodies that cannot give way.
@@ -34,11 +34,11 @@ impl RigidBodies {
         &mut self,
         particles: &mut Particles,
         neighbors: &Neighbors,
-        walls: &Walls,
+        (walls, outlines): (&Walls, &Outlines),
         rows: &RowIndex,
         dt: f64,
     ) {
-        self.find_penetrations(particles, neighbors, rows);
+        self.find_penetrations(particles, neighbors, outlines, rows);
         let swept = self.find_fast(particles);
         let mut start = (u32::MAX, Vector::ZERO);
         for k in 0..self.penetrations.len() {
@@ -159,7 +159,13 @@ impl RigidBodies {
         true
     }
 
-    fn find_penetrations(&mut self, particles: &Particles, neighbors: &Neighbors, rows: &RowIndex) {
+    fn find_penetrations(
+        &mut self,
+        particles: &Particles,
+        neighbors: &Neighbors,
+        outlines: &Outlines,
+        rows: &RowIndex,
+    ) {
         let mut found = std::mem::take(&mut self.penetrations);
         found.clear();
         let periodic = neighbors.periodic();
@@ -175,6 +181,11 @@ impl RigidBodies {
                     found.push(Penetration { row: row as u32, fixed, body });
                 }
             });
+        });
+        self.find_inside(particles, outlines, |row, body| {
+            if is_movable(particles, row) {
+                found.push(Penetration { row: row as u32, fixed: true, body });
+            }
         });
         found.sort_unstable();
         found.dedup();

@@ -28,7 +28,7 @@ impl RigidBodies {
         }
         let counted = saved.sample_ids.iter().zip(bodies.views()).all(|(&(first, end), view)| {
             let count = if self.seen { view.samples.len() as u32 } else { 0 };
-            first.checked_add(count) == Some(end)
+            first.checked_add(count) == Some(end) || (self.outlines && first == end)
         });
         let rising = saved.sample_ids.windows(2).all(|two| two[0].1 <= two[1].0);
         // Bodies that are particles neither come nor go.
@@ -40,6 +40,8 @@ impl RigidBodies {
             return None;
         }
         let near = bodies.views().iter().map(|body| near(body, self.seen, spacing)).collect();
-        Some(RigidBodies { bodies, near, sample_ids: saved.sample_ids.clone(), ..self.clone() })
+        let mut rigid = RigidBodies { bodies, near, sample_ids: saved.sample_ids.clone(), ..self.clone() };
+        rigid.find_met();
+        Some(rigid)
     }
 }

@@ -1,12 +1,12 @@
 //! Bodies made of particles, drawn back to their shapes: their visible state follows their samples.
 
 use super::RigidBodies;
+use super::outlined::shape;
 use crate::constraints::Member;
 use crate::math::{Vector64, vector, wide};
 use crate::particles::Particles;
 use crate::rigid::{BodyKind, Pose, Twist};
 use crate::rows::RowIndex;
-use crate::shapes::Shape;
 
 /// Distance of the corners between which the outline of a soft body may bend [spacings].
 const PIECE: f64 = 2.0;
@@ -39,11 +39,7 @@ impl RigidBodies {
     /// The bodies as particles, for the group that matches their shapes.
     pub(crate) fn members(&self) -> Vec<Member> {
         let member = |(id, view): (usize, &crate::rigid::Body)| {
-            let shape = if view.radius > 0.0 {
-                Shape::Disc { radius: view.radius }
-            } else {
-                Shape::Polygon(view.outline.clone())
-            };
+            let shape = shape(view);
             let mass = if view.kind == BodyKind::Dynamic { view.mass } else { f64::INFINITY };
             let (first, elasticity) = (self.sample_ids[id].0, self.bodies.elasticity(id));
             Member::new(first, view.samples.clone(), &shape, mass, elasticity, view.surface, view.filter)

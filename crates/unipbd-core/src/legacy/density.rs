@@ -19,7 +19,7 @@ pub struct LegacyDensity {
     density: Density<Formula>,
     /// Weight of one neighbour [m^2].
     volume: Real,
-    /// Constraint force mixing over the squared volume, by material [1/(kg m^6)]; empty for none.
+    /// Constraint force mixing over the squared volume in units, by material [1/(kg m^2)]; empty for none.
     mixing: Vec<Real>,
     pressure: Option<ArtificialPressure>,
 }
@@ -36,10 +36,11 @@ struct ArtificialPressure {
 }
 
 impl LegacyDensity {
-    /// The group of a scene, around its density group. `volume` is the weight of one neighbour there [m^2].
-    pub fn new(scene: &Scene, kernel: Kernel<Formula>, volume: Real, density: Density<Formula>) -> Self {
-        let legacy = &scene.legacy;
-        let at_rest = legacy.constraint_mixing * kernel.lattice(scene.spacing).gradient_squared;
+    /// The group of a scene, around its density group. `volume` is the weight of one neighbour there, and `unit`
+    /// that of its responses [m^2].
+    pub fn new(scene: &Scene, kernel: Kernel<Formula>, [volume, unit]: [Real; 2], density: Density<Formula>) -> Self {
+        let (legacy, unit) = (&scene.legacy, f64::from(unit));
+        let at_rest = legacy.constraint_mixing * kernel.lattice(scene.spacing).gradient_squared * unit * unit;
         let mixing = scene.materials().map(|material| match material.phase().is_fluid() {
             true => real(at_rest / material.particle_mass(scene.spacing)),
             false => 0.0,

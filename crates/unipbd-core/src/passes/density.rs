@@ -18,6 +18,9 @@ pub struct DensityInput<'a> {
     pub gradient_positions: Option<&'a [Vector]>,
     /// The factor w_j of |grad W_ij|^2: inverse masses.
     pub weights: Weights<'a>,
+    /// A factor on grad W in the response, about the volume of a particle [m^2]: without it small spacings leave the
+    /// range of f32. A power of two changes no digit.
+    pub unit: Real,
 }
 
 /// Output of the density pass: one row per row of the list.
@@ -26,7 +29,7 @@ pub struct DensityOutput<'a> {
     pub value: &'a mut [Real],
     /// sum_j grad W_ij [1/m^3].
     pub gradient: &'a mut [Vector],
-    /// sum_j w_j |grad W_ij|^2.
+    /// sum_j w_j |unit grad W_ij|^2.
     pub response: &'a mut [Real],
 }
 
@@ -65,13 +68,14 @@ struct Density<'a, K, S, const SPLIT: bool, const WEIGHTED: bool> {
     gradient_positions: &'a [Vector],
     weights: &'a [Real],
     factor: Real,
+    unit: Real,
 }
 
 impl<'a, K: Shape, S: Space, const SPLIT: bool, const WEIGHTED: bool> Density<'a, K, S, SPLIT, WEIGHTED> {
     fn new(kernel: K, space: S, input: DensityInput<'a>) -> Self {
         let (weights, factor) = input.weights.parts();
         let gradient_positions = input.gradient_positions.unwrap_or(input.positions);
-        Density { kernel, space, positions: input.positions, gradient_positions, weights, factor }
+        Density { kernel, space, positions: input.positions, gradient_positions, weights, factor, unit: input.unit }
     }
 }
 
@@ -101,11 +105,12 @@ impl<K: Shape, S: Space, const SPLIT: bool, const WEIGHTED: bool> Pass<4> for De
     #[inline(always)]
     fn finish<M: Number>(&self, [value, x, y, response]: [M; 4]) -> [M; 4] {
         let slope = self.kernel.slope_scale();
+        let in_units = slope * self.unit;
         [
             value * value.like(self.kernel.value_scale()),
             x * x.like(slope),
             y * y.like(slope),
-            response * response.like(slope * slope * self.factor),
+            response * response.like(in_units * in_units * self.factor),
         ]
     }
 

@@ -29,7 +29,7 @@ use crate::math::{Real, Vector, Vector64, wide};
 use crate::parallel::Parallelism;
 use crate::particles::{Particles, displaced};
 use crate::rigid::{Bodies, Twist};
-use crate::walls::Walls;
+use crate::walls::{Moment, Outlines, Walls};
 use components::Components;
 use couplings::Couplings;
 use lattice::Lattice;
@@ -70,6 +70,8 @@ pub(crate) struct PressureGrid {
     solids: Solids,
     /// Couplings of the fluid, without those that stand for bodies: only where there are bodies.
     fluid: Couplings,
+    /// Places of matter that is no particle: each fills the square of a spacing.
+    filled: Vec<Vector>,
 }
 
 impl PressureGrid {
@@ -88,18 +90,24 @@ impl PressureGrid {
             components: Components::default(),
             solids: Solids::default(),
             fluid: Couplings::default(),
+            filled: Vec::new(),
         }
+    }
+
+    /// The places of matter in bodies that are no particles, to be written before a projection [m].
+    pub(crate) fn filled_mut(&mut self) -> &mut Vec<Vector> {
+        &mut self.filled
     }
 
     /// Changes the velocities of predicted particles and bodies by the pressure of the grid, and moves them along.
     pub(crate) fn project(
         &mut self,
         particles: &mut Particles,
-        (walls, bodies): (&Walls, Option<Immersed<'_>>),
+        (walls, outlines, bodies): (&Walls, &Outlines, Option<Immersed<'_>>),
         dt: f64,
         parallelism: Parallelism,
     ) {
-        self.assemble(particles, (walls, bodies.as_ref()), dt, parallelism);
+        self.assemble(particles, (walls, outlines, bodies.as_ref()), dt, parallelism);
         let (system, multigrid) = (&mut self.system, &mut self.multigrid);
         let mut solve = |accuracy: Accuracy, of_pressure: bool| {
             let mut solution = std::mem::take(if of_pressure { &mut system.pressure } else { &mut system.potential });
@@ -123,13 +131,13 @@ impl PressureGrid {
     fn assemble(
         &mut self,
         particles: &Particles,
-        (walls, bodies): (&Walls, Option<&Immersed<'_>>),
+        (walls, outlines, bodies): (&Walls, &Outlines, Option<&Immersed<'_>>),
         dt: f64,
         parallelism: Parallelism,
     ) {
         let area = self.spacing * self.spacing;
         self.lattice.cover(particles, walls, parallelism);
-        if self.openings.measure(&self.lattice, walls, parallelism) {
+        if self.openings.measure(&self.lattice, (walls, outlines), parallelism) {
             self.multigrid.allocate(&self.lattice, &self.openings, parallelism);
             self.system.allocate(&self.openings);
         } else {
@@ -137,6 +145,7 @@ impl PressureGrid {
         }
         let (lattice, openings, stride) = (&self.lattice, &self.openings, self.lattice.stride());
         self.transfer.gather(lattice, particles, (&self.mixture, area), parallelism);
+        self.transfer.fill(lattice, &self.filled, area);
         let fields = self.transfer.fields();
         let (system, multigrid, solids) = (&mut self.system, &mut self.multigrid, &mut self.solids);
         if let Some(immersed) = bodies {
@@ -238,6 +247,29 @@ impl PressureGrid {
         });
     }
 
+    /// Loads the bodies of the outlines that are walls of the grid with its pressure.
+    pub(crate) fn push_outlines(&self, outlines: &Outlines, bodies: &mut Bodies, dt: f64) {
+        let (lattice, openings, system) = (&self.lattice, &self.openings, &self.system);
+        let mass_per_length = CELL * CELL * self.mixture.heaviest / lattice.cell;
+        outlines.fixed_surfaces(lattice.bounds(), lattice.cell / STEPS_PER_CELL, |surface| {
+            let [from, to] = surface.ends;
+            let steps = (STEPS_PER_CELL * (to - from).length() / lattice.cell).ceil().max(1.0);
+            let step = (to - from) / steps;
+            let per_pressure = f64::from(step.length() * mass_per_length) / dt;
+            let (mut force, mut torque) = (Vector64::ZERO, 0.0);
+            for k in 0..steps as usize {
+                let middle = from + step * (k as Real + 0.5);
+                let read = system.pressure_at_wall(lattice, openings, (middle, surface.normal));
+                let push = -wide(surface.normal) * (f64::from(read.unwrap_or(0.0)) * per_pressure);
+                force += push;
+                torque += outlines.arm(surface.outline, middle, Moment::End).perp_dot(push);
+            }
+            if force != Vector64::ZERO || torque != 0.0 {
+                bodies.load(outlines.body(surface.outline), force, torque, dt);
+            }
+        });
+    }
+
     /// Memory held [bytes].
     pub(crate) fn memory_bytes(&self) -> usize {
         self.openings.memory_bytes()
@@ -247,6 +279,7 @@ impl PressureGrid {
             + self.components.memory_bytes()
             + self.solids.memory_bytes()
             + self.fluid.memory_bytes()
+            + held(&self.filled)
     }
 }
 

@@ -2,9 +2,9 @@
 
 use super::held_by;
 use super::lattice::Lattice;
-use crate::math::{Real, Vector, larger};
+use crate::math::{Real, Vector, larger, smaller};
 use crate::parallel::Parallelism;
-use crate::walls::Walls;
+use crate::walls::{Outlines, Walls};
 
 /// Sample points along each axis in the surroundings of a cell near a wall.
 const SAMPLES: usize = 8;
@@ -17,6 +17,8 @@ const ON_WALL: Real = 1e-2;
 #[derive(Default)]
 pub(super) struct Openings {
     of: Lattice,
+    /// The outlines they were measured with.
+    version: u64,
     /// Open part of the left face.
     pub left: Vec<Real>,
     /// Open part of the lower face.
@@ -28,21 +30,39 @@ pub(super) struct Openings {
 
 impl Openings {
     /// Measures all openings if the lattice has changed; walls do not move. Returns whether it measured.
-    pub fn measure(&mut self, lattice: &Lattice, walls: &Walls, parallelism: Parallelism) -> bool {
-        if self.of == *lattice && !self.left.is_empty() {
+    pub fn measure(
+        &mut self,
+        lattice: &Lattice,
+        (walls, outlines): (&Walls, &Outlines),
+        parallelism: Parallelism,
+    ) -> bool {
+        if self.of == *lattice && self.version == outlines.version() && !self.left.is_empty() {
             return false;
         }
-        self.of = *lattice;
+        (self.of, self.version) = (*lattice, outlines.version());
         let (cells, stride, cell) = (lattice.len(), lattice.stride(), lattice.cell);
         for column in [&mut self.left, &mut self.lower, &mut self.inverse, &mut self.corners] {
             column.resize(cells, 0.0);
         }
-        let distance = |x: Vector| {
+        let distance = |x: Vector, among: &[usize]| {
             let mut distance = [Real::INFINITY];
             walls.distances(&[x], &mut distance);
-            distance[0]
+            match among.is_empty() {
+                true => distance[0],
+                false => smaller(outlines.distance_from(among, x, 2.0 * cell), distance[0]),
+            }
         };
-        parallelism.fill(&mut self.corners, |k| distance(lattice.corner(k)) - ON_WALL * cell);
+        parallelism.chunks(&mut self.corners, |first, corners| {
+            let end = first + corners.len() - 1;
+            // A chunk of cells is some rows, or a part of one.
+            let rows = end / stride > first / stride;
+            let [left, right] = if rows { [0, stride - 1] } else { [first % stride, end % stride] };
+            let box_of = [first / stride * stride + left, end / stride * stride + right].map(|k| lattice.corner(k));
+            let among = outlines.fixed_within(box_of);
+            for (k, corner) in corners.iter_mut().enumerate() {
+                *corner = distance(lattice.corner(first + k), &among) - ON_WALL * cell;
+            }
+        });
         let corner = |k: usize| self.corners.get(k).copied().unwrap_or(-cell);
         parallelism.fill(&mut self.left, |k| open_part(corner(k), corner(k + stride)));
         parallelism.fill(&mut self.lower, |k| open_part(corner(k), corner(k + 1)));
@@ -53,6 +73,9 @@ impl Openings {
                 return 0.0;
             }
             let centre = lattice.corner(k) + Vector::splat(0.5 * cell);
+            let around = Vector::splat(1.5 * cell);
+            let among = outlines.fixed_within([centre - around, centre + around]);
+            let distance = |x: Vector| distance(x, &among);
             let near = distance(centre) < 1.5 * cell;
             if near { 1.0 / larger(open_surroundings(centre, cell, distance), LEAST) } else { 1.0 }
         });

@@ -187,8 +187,11 @@ impl System {
         self.masked.resize(self.depth.len(), false);
         for &cell in &self.touched {
             let cell = cell as usize;
-            let faces = [fields.left[cell], fields.left[cell + 1], fields.lower[cell], fields.lower[cell + stride]];
-            let dry = faces.iter().all(|[_, weight]| *weight == 0.0);
+            // Bodies may reach to the end of the lattice.
+            let dry = |sums: &[[Real; 2]], at: usize| sums.get(at).is_none_or(|[_, weight]| *weight == 0.0);
+            let [dry_x, dry_y] = [(&fields.left, 1), (&fields.lower, stride)]
+                .map(|(sums, next)| dry(sums, cell) && dry(sums, cell + next));
+            let dry = dry_x && dry_y;
             self.masked[cell] = self.depth[cell] >= 0.0 && (dry || fluid.total[cell] < MASKED);
         }
         for solid in &solids.solids {

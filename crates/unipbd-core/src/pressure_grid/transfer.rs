@@ -4,7 +4,7 @@ use super::lattice::{Lattice, Nodes};
 use super::mixture::Mixture;
 use super::{held_by, renew};
 use crate::bytes::held;
-use crate::math::{Quad, Real, larger, smaller};
+use crate::math::{Quad, Real, Vector, larger, smaller};
 use crate::parallel::{CHUNK_ROWS, Parallelism};
 use crate::particles::Particles;
 use crate::phase::Phase;
@@ -89,6 +89,17 @@ impl Transfer {
         });
         if !mixture.simple {
             fields.add_up_mixture(tasks, lattice.len(), parallelism);
+        }
+    }
+
+    /// Adds matter that is no particle and brings no velocity: squares of this area at some places [m], [m^2].
+    pub fn fill(&mut self, lattice: &Lattice, places: &[Vector], area: Real) {
+        let (stride, filled) = (lattice.stride(), area / (lattice.cell * lattice.cell));
+        for &x in places {
+            let place = lattice.place(x);
+            if lattice.holds(place) {
+                add(&mut self.fields.centre, 0, stride, lattice.around(place).centre, [0.0, filled]);
+            }
         }
     }
 

@@ -307,6 +307,14 @@ impl Bodies {
         }
     }
 
+    /// The first body whose pose or velocity is not finite.
+    pub(crate) fn first_not_finite(&self) -> Option<usize> {
+        let finite = |linear: Vector64, angular: f64| linear.is_finite() && angular.is_finite();
+        self.poses.iter().zip(&self.velocities).position(|(pose, velocity)| {
+            !finite(pose.position, pose.angle) || !finite(velocity.linear, velocity.angular)
+        })
+    }
+
     /// Brings the readable state of all bodies up to date.
     pub(crate) fn refresh_views(&mut self) {
         (0..self.len()).for_each(|id| self.refresh_view(id));

@@ -6,8 +6,8 @@ pub(crate) const OVER_RELAXATION: f64 = 1.8;
 
 /// Speed below which bodies may sleep, relative to sqrt(gravity x size).
 pub(crate) const SLEEP_SPEED: f64 = 0.02;
-/// Rest time before bodies sleep [s].
-pub(crate) const SLEEP_DELAY: f64 = 0.5;
+/// Frames at rest before bodies sleep.
+const SLEEP_FRAMES: f64 = 30.0;
 
 /// How contacts of bodies are solved, and when bodies sleep.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -28,8 +28,9 @@ pub struct ContactDescription {
     /// Speed of the fastest point of a body below which it may sleep, relative to sqrt(gravity x size of the body).
     /// Nothing sleeps without gravity, while it drifts, while its speed grows, or while a motor turns it.
     pub sleep_speed: f64,
-    /// Time at rest before bodies that touch each other sleep [s].
-    pub sleep_delay: f64,
+    /// Time at rest before bodies that touch each other sleep; left out, 30 frames [s].
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub sleep_delay: Option<f64>,
 }
 
 /// The order of contacts and joints in an iteration.
@@ -85,12 +86,17 @@ impl Default for ContactDescription {
             friction_rule: FrictionRule::default(),
             sleep: true,
             sleep_speed: SLEEP_SPEED,
-            sleep_delay: SLEEP_DELAY,
+            sleep_delay: None,
         }
     }
 }
 
 impl ContactDescription {
+    /// Time at rest before bodies sleep, at this number of frames per second [s].
+    pub(crate) fn rest_time(&self, fps: f64) -> f64 {
+        self.sleep_delay.unwrap_or(SLEEP_FRAMES / fps)
+    }
+
     pub(crate) fn is_default(&self) -> bool {
         *self == ContactDescription::default()
     }

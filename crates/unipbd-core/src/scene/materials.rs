@@ -84,7 +84,8 @@ pub struct Gas {
     pub drag: f64,
     /// Drag that grows with the square of the speed [1/m].
     pub quadratic_drag: f64,
-    /// Strength of vorticity confinement, dimensionless (0 is off; above 5 it adds energy).
+    /// Strength of vorticity confinement, the acceleration over vorticity times spacing (0 is off; above 5 in scenes of a
+    /// few metres it adds energy) [1/s].
     pub vorticity: f64,
     /// Baroclinic turbulence beta, dimensionless: vorticity grows by beta grad(rho/rho0) x g, with
     /// rho/rho0 = 1 + `gravity_factor` x temperature, and less where the gas is thin.

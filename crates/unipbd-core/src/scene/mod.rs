@@ -49,7 +49,7 @@ pub use sources::*;
 pub use walls::*;
 pub use waves::*;
 
-pub(crate) use contacts::{OVER_RELAXATION, SLEEP_DELAY, SLEEP_SPEED};
+pub(crate) use contacts::{OVER_RELAXATION, SLEEP_SPEED};
 pub(crate) use copies::MOST_BODIES;
 pub(crate) use crowding::crowd;
 pub(crate) use layout::{block_points, disc_points};

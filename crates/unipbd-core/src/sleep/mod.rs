@@ -2,8 +2,8 @@
 //! there is motion near them.
 //!
 //! The plane is cut into square blocks. Connected blocks of liquid, and of bodies in it, fall asleep
-//! together once their particles have moved by less than [`STILL`] spacings in the mean for [`DELAY`]
-//! seconds, and in no block by more than [`ROUGH`]. A sleeping block wakes when a block around it is rough:
+//! together once their particles have moved by less than [`STILL`] spacings in the mean for some
+//! time, and in no block by more than [`ROUGH`]. A sleeping block wakes when a block around it is rough:
 //! motion spreads by one block per frame, or by its distance at the current speed if that is larger. Sleeping
 //! blocks adjacent to awake blocks still have a pressure, so that they respond to awake particles.
 //!
@@ -12,7 +12,7 @@
 
 mod blocks;
 
-use crate::math::{Real, Vector, real};
+use crate::math::{Real, Vector, Vector64, real};
 use crate::particles::Particles;
 use crate::periodic::Periodic;
 use crate::phase::Phase;
@@ -28,8 +28,10 @@ const STILL: f64 = 0.05;
 const ROUGH: f64 = 0.1;
 /// ...and that of any particle.
 const FAR: f64 = 1.0;
-/// How long they must have been at rest [s].
-const DELAY: f64 = 0.5;
+/// How long they must have been at rest, in frames...
+const FRAMES: f64 = 30.0;
+/// ...and in the time of a fall by half a spacing: what has just begun to fall is not at rest.
+const FALLS: f64 = 7.0;
 /// Upper limit of the wake distance, in blocks.
 const FARTHEST: i32 = 16;
 
@@ -40,6 +42,7 @@ pub(crate) struct LiquidSleep {
     rough: f64,
     far: Real,
     frame_time: Real,
+    delay: Real,
     blocks: Blocks,
     /// The blocks of sleeping rows, sorted, and the sleeping blocks adjacent to awake ones.
     sleeping: Vec<Key>,
@@ -53,6 +56,13 @@ pub(crate) struct LiquidSleep {
     order: Vec<u32>,
 }
 
+/// How long liquid must have been at rest before it sleeps [s].
+fn delay(scene: &Scene) -> f64 {
+    let gravity = Vector64::from(scene.gravity).length();
+    let fall = if gravity > 0.0 { FALLS * (scene.spacing / gravity).sqrt() } else { 0.0 };
+    fall.max(FRAMES / scene.fps)
+}
+
 impl LiquidSleep {
     /// The sleep rules of a scene, or `None` if the scene does not enable sleep.
     pub fn new(scene: &Scene, periodic: Periodic) -> Option<Self> {
@@ -63,6 +73,7 @@ impl LiquidSleep {
             rough: ROUGH * scene.spacing,
             far: spacings(FAR),
             frame_time: real(1.0 / scene.fps),
+            delay: real(delay(scene)),
             blocks: Blocks::default(),
             sleeping: Vec::new(),
             border: Vec::new(),
@@ -188,7 +199,7 @@ impl LiquidSleep {
         for (place, &(key, _)) in self.blocks.all().iter().enumerate() {
             let whole = self.blocks.whole(place);
             let calm = whole.sleepy && !whole.rough && whole.mean() <= self.still;
-            if calm && whole.rest + self.frame_time >= DELAY as Real {
+            if calm && whole.rest + self.frame_time >= self.delay {
                 self.tiring.push(key);
             }
         }

@@ -73,8 +73,7 @@ impl Solver {
         if rigid.is_some() {
             next();
         }
-        let replanned = rigid.as_ref().map(RigidBodies::has_followers)
-            != world.parts.rigid.as_ref().map(RigidBodies::has_followers);
+        let replanned = rigid.is_some() || world.parts.rigid.is_some();
         world.parts.rigid = rigid;
         if let Some(gravity) = gravity_of(next()).filter(|gravity| *gravity != world.parts.exact_gravity) {
             world.set_gravity(gravity);

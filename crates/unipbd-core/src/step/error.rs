@@ -19,6 +19,15 @@ pub enum SolverError {
         /// Description of the error.
         what: String,
     },
+    /// A body has a place or a velocity that is not finite.
+    Body {
+        /// Substep since the start.
+        step: u64,
+        /// Simulated time [s].
+        time: f64,
+        /// Its name.
+        body: String,
+    },
     /// A hook asked for an acceleration that is not finite or absurd. The run stands before the substep.
     Hook {
         /// Substep since the start.
@@ -42,6 +51,10 @@ impl fmt::Display for SolverError {
             SolverError::Diverged { stage, step, time, particle, material, what } => write!(
                 f,
                 "diverged at {time:.6} s (substep {step}, after {stage}): particle {particle} of \"{material}\" {what}"
+            ),
+            SolverError::Body { step, time, body } => write!(
+                f,
+                "diverged at {time:.6} s (substep {step}): the place or velocity of body \"{body}\" is not finite"
             ),
             SolverError::Hook { step, time, particle, material, acceleration: [x, y], limit } => write!(
                 f,

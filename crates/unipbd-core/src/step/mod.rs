@@ -5,6 +5,7 @@ mod breaks;
 mod density_watch;
 mod diagnose;
 mod error;
+mod finite;
 mod integrate;
 mod pipeline;
 mod query;

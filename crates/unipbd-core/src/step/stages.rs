@@ -81,9 +81,18 @@ impl World {
     fn project_on_grid(&mut self) {
         let parts = &mut self.parts;
         let Some(grid) = &mut parts.pressure_grid else { return };
+        if let Some(rigid) = &parts.rigid {
+            let filled = grid.filled_mut();
+            filled.clear();
+            rigid.each_filled(|x| filled.push(x));
+        }
         let mut immersed = parts.rigid.as_mut().map(RigidBodies::immersed);
         let bodies = immersed.as_mut().map(|(bodies, mobilities, counts)| Immersed { bodies, counts, mobilities });
-        grid.project(&mut parts.particles, (&parts.walls, bodies), self.clock.dt, parts.parallelism);
+        let around = (&parts.walls, &parts.outlines, bodies);
+        grid.project(&mut parts.particles, around, self.clock.dt, parts.parallelism);
+        if let Some((bodies, ..)) = immersed {
+            grid.push_outlines(&parts.outlines, bodies, self.clock.dt);
+        }
     }
 
     fn add_grid_wall_forces(&mut self) {
@@ -117,6 +126,7 @@ impl World {
         let parts = &mut self.parts;
         let Some(rigid) = &mut parts.rigid else { return };
         rigid.place_samples(&mut parts.particles, &self.rows);
+        rigid.place_outlines(&mut parts.outlines);
     }
 
     fn iterate_contacts(&mut self) {
@@ -134,6 +144,7 @@ impl World {
         let parts = &mut self.parts;
         let Some(rigid) = &mut parts.rigid else { return };
         rigid.settle_samples(&mut parts.particles, &self.rows);
+        rigid.place_outlines(&mut parts.outlines);
     }
 
     fn finish_bodies(&mut self) {
@@ -236,12 +247,14 @@ impl World {
         let parts = &mut self.parts;
         let Some(rigid) = &mut parts.rigid else { return };
         rigid.take_loads(self.corrections.loads(), &parts.particles, &self.rows, self.clock.dt);
+        rigid.take_outline_loads(self.corrections.outline_loads(), &parts.outlines, self.clock.dt);
     }
 
     fn push_out(&mut self) {
         let parts = &mut self.parts;
         let Some(rigid) = &mut parts.rigid else { return };
-        rigid.push_out(&mut parts.particles, &parts.neighbors, &parts.walls, &self.rows, self.clock.dt);
+        let walls = (&parts.walls, &parts.outlines);
+        rigid.push_out(&mut parts.particles, &parts.neighbors, walls, &self.rows, self.clock.dt);
     }
 
     fn update_velocities(&mut self) -> Result<(), SolverError> {

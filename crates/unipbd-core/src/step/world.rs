@@ -23,7 +23,7 @@ use crate::rigid::Wall;
 use crate::rows::RowIndex;
 use crate::sleep::LiquidSleep;
 use crate::sources::{EmitterSystem, RemovalRules};
-use crate::walls::Walls;
+use crate::walls::{Outlines, Walls};
 
 /// Contacts of a body in a dense heap: six neighbours, each contact shared by two bodies.
 const CONTACTS_PER_BODY: usize = 3;
@@ -34,6 +34,8 @@ pub(crate) struct Parts {
     pub materials: Vec<Material>,
     pub forces: Vec<BodyForce>,
     pub walls: Walls,
+    /// Outlines of bodies that are walls of the fluid.
+    pub outlines: Outlines,
     pub neighbors: Neighbors,
     pub search_positions: SearchPositions,
     pub pressure_grid: Option<PressureGrid>,
@@ -215,6 +217,10 @@ impl World {
 
     /// Selects the stages: called when the scene is built or its groups change.
     pub fn replan(&mut self) {
+        match &self.parts.rigid {
+            Some(rigid) => rigid.set_outlines(&mut self.parts.outlines),
+            None => self.parts.outlines.set(std::iter::empty()),
+        }
         let parts = &self.parts;
         let needs = parts.groups.iter().map(|group| group.needs()).fold(Needs::NOTHING, |a, b| a | b);
         let of_effects = parts.effects.iter().map(|effect| effect.needs()).fold(Needs::NOTHING, |a, b| a | b);
@@ -239,6 +245,7 @@ impl World {
             loads: parts.rigid.is_some(),
             grid_shifts: parts.pressure_grid.is_some(),
             walls: measured_walls,
+            outlines: parts.outlines.len(),
         });
         self.needs_rows = parts.emitters.is_some() || parts.rigid.is_some() || needs.contains(Needs::ROWS);
         self.index_rows();
@@ -322,6 +329,7 @@ impl World {
     /// Runs the stages that end a frame and sets the clock to its end.
     pub fn end_frame(&mut self, begun: Begun) -> Result<FrameReport, SolverError> {
         self.run_all(|plan| &plan.end)?;
+        self.check_finite()?;
         self.watch_density();
         let inverse = 1.0 / self.parts.frame_time;
         self.wall_forces = self.wall_impulses.iter().map(|impulse| *impulse * inverse).collect();
@@ -370,6 +378,7 @@ impl World {
             rows,
             neighbors: &parts.neighbors,
             walls: &parts.walls,
+            outlines: &parts.outlines,
             parallelism: parts.parallelism,
         }
     }
@@ -379,7 +388,7 @@ impl World {
         let shared = parts.particles.memory_bytes() + parts.neighbors.memory_bytes() + self.rows.memory_bytes();
         let groups = parts.groups.iter().map(|group| group.memory_bytes()).sum::<usize>();
         let effects = parts.effects.iter().map(|effect| effect.memory_bytes()).sum::<usize>();
-        let grid = parts.pressure_grid.as_ref().map_or(0, PressureGrid::memory_bytes);
+        let grid = parts.pressure_grid.as_ref().map_or(0, PressureGrid::memory_bytes) + parts.outlines.memory_bytes();
         let room = grid + self.corrections.memory_bytes() + self.changes.memory_bytes() + held(&self.velocities);
         shared + groups + effects + room
     }

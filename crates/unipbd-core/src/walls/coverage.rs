@@ -12,6 +12,33 @@ const NODES: usize = CELLS + 1;
 /// columns keep their level; a larger value increases the resistance of a wall to motion along it.
 const STEEPER: f64 = 0.25;
 
+/// How walls that uphold the lowest row of a liquid see distances: see [`Coverage::upholding`].
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stretch {
+    /// Distance that stays [m].
+    kept: f64,
+    /// From there to the kernel radius [m].
+    reach: f64,
+    strength: f64,
+}
+
+impl Stretch {
+    /// For a kernel of this radius and a liquid of this spacing, if there is one to be upheld [m].
+    pub fn new(radius: f64, upheld: Option<f64>) -> Stretch {
+        let kept = 0.5 * upheld.unwrap_or(0.0);
+        Stretch { kept, reach: radius - kept, strength: if upheld.is_some() { STEEPER } else { 0.0 } }
+    }
+
+    /// The distance as it is seen, and its derivative.
+    #[inline]
+    pub fn at(&self, distance: f64) -> (f64, f64) {
+        let apart = distance.max(0.0) - self.kept;
+        let left = (1.0 - apart.max(0.0) / self.reach).max(0.0);
+        let slope = if distance < 0.0 { 0.0 } else { left * (3.0 * left - 2.0) };
+        (distance + self.strength * apart * left * left, 1.0 + self.strength * slope)
+    }
+}
+
 /// Tables of the integral of a kernel over quadrants and half-planes.
 #[derive(Clone, Debug)]
 pub struct Coverage {
@@ -44,13 +71,8 @@ impl Coverage {
     /// With u = d - dx/2: seen(d) = d + b u (1 - u/(h - dx/2))^2 for u > 0, d + b u for 0 < d < dx/2, and
     /// behind the surface the shift keeps its value at the surface.
     pub fn upholding<K: Shape>(kernel: &Kernel<K>, spacing: f64) -> Self {
-        let reach = f64::from(kernel.radius()) - 0.5 * spacing;
-        Coverage::tabulate(kernel, |distance| {
-            let apart = distance.max(0.0) - 0.5 * spacing;
-            let left = (1.0 - apart.max(0.0) / reach).max(0.0);
-            let slope = if distance < 0.0 { 0.0 } else { left * (3.0 * left - 2.0) };
-            (distance + STEEPER * apart * left * left, 1.0 + STEEPER * slope)
-        })
+        let stretch = Stretch::new(f64::from(kernel.radius()), Some(spacing));
+        Coverage::tabulate(kernel, |distance| stretch.at(distance))
     }
 
     /// Tables of a kernel with a modified wall distance: `stretch` returns the modified distance and its
@@ -135,7 +157,7 @@ fn value<K: Shape>(kernel: &Kernel<K>, x: f64, y: f64) -> f64 {
     f64::from(kernel.value(real((x * x + y * y).sqrt())))
 }
 
-fn simpson(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
+pub(super) fn simpson(from: f64, to: f64, f: impl Fn(f64) -> f64) -> f64 {
     (to - from) / 6.0 * (f(from) + 4.0 * f(0.5 * (from + to)) + f(to))
 }
 

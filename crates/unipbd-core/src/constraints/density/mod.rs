@@ -29,6 +29,7 @@ pub struct Density<K = WendlandC2> {
     sums: Sums,
     error: Vec<Real>,
     multiplier: Vec<Real>,
+    /// Change of each multiplier in the iteration, in units of its own.
     step: Vec<Real>,
     wall_gradient: Vec<Vector>,
     places: Places,
@@ -91,7 +92,7 @@ impl<K: Shape> Density<K> {
         self.sum_kernels(now);
     }
 
-    /// The sums of w |grad W|^2 of the iteration that has begun, by row [1/(kg m^6)].
+    /// The sums of w |unit grad W|^2 of the iteration that has begun, by row [1/(kg m^2)].
     pub(crate) fn responses_mut(&mut self) -> &mut [Real] {
         &mut self.sums.response
     }
@@ -103,6 +104,7 @@ impl<K: Shape> Density<K> {
         self.correct(now, out);
         self.load_bodies(now, out);
         self.load_walls(now, out);
+        self.load_outlines(now, out);
         self.repel(now, out);
     }
 }

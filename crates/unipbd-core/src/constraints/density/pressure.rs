@@ -140,6 +140,10 @@ impl<K: Shape> Density<K> {
             across(gradient);
             stress.walls.add(-own, gradient, from_wall);
         });
+        now.outlines.pushes(point, |gradient, from_edge| {
+            across(gradient);
+            stress.walls.add(-own, gradient, from_edge);
+        });
         stress
     }
 }

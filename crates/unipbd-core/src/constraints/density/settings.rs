@@ -11,6 +11,10 @@ pub struct DensitySettings {
     pub spacing: f64,
     /// Weight of one neighbour: its volume, scaled so that the rest lattice reads 1 [m^2].
     pub volume: Real,
+    /// The power of two below it: [responses](crate::passes::DensityOutput::response) are taken in this unit [m^2].
+    pub unit: Real,
+    /// A power of two about as large as multipliers: their steps are summed in this unit [kg m^2].
+    pub step_unit: Real,
     /// -sum of y dW/dy over the rest lattice [1/m^2].
     pub moment: f64,
     /// Where gradients are taken.
@@ -93,6 +97,8 @@ impl DensitySettings {
         DensitySettings {
             spacing: scene.spacing,
             volume: real(volume),
+            unit: real(power_of_two_below(volume)),
+            step_unit: real(power_of_two_below(volume * lightest_mass(scene, |other| other.phase().is_fluid()))),
             moment: sums.moment,
             gradients: scene.gradients(),
             uniform_inverse_mass: uniform_mass(scene).map(|mass| real(1.0 / mass)),
@@ -163,6 +169,12 @@ impl DensityMaterial {
         let [none, whole] = SHIFT_GATE;
         self.shifting * ((error - none) / (whole - none)).clamp(0.0, 1.0)
     }
+}
+
+/// The largest power of two that is not above a positive number; 1 for infinity.
+fn power_of_two_below(value: f64) -> f64 {
+    const MANTISSA: u64 = (1 << (f64::MANTISSA_DIGITS - 1)) - 1;
+    if value.is_finite() { f64::from_bits(value.to_bits() & !MANTISSA) } else { 1.0 }
 }
 
 /// The smallest mass of a particle of these materials [kg].

@@ -12,7 +12,8 @@ use crate::passes::{self, DensityInput, DensityOutput, Weights};
 use crate::phase::{Phase, uniform};
 use crate::simd::Level;
 use crate::simd::space::{Open, Space, Wrapped};
-use crate::walls::Coverage;
+use crate::walls::{Coverage, Moment};
+use std::ops::Range;
 
 impl<K: Shape> Density<K> {
     /// Pass 1: sums of the kernel, its gradient and the response of the neighbours.
@@ -25,6 +26,7 @@ impl<K: Shape> Density<K> {
                 Some(inverse_mass) if !now.particles.any_scripted() => Weights::Uniform(inverse_mass),
                 _ => Weights::Column(now.particles.inverse_masses()),
             },
+            unit: self.settings.unit,
         };
         let sums = &mut self.sums;
         let out = DensityOutput { value: &mut sums.value, gradient: &mut sums.gradient, response: &mut sums.response };
@@ -37,6 +39,8 @@ impl<K: Shape> Density<K> {
         let behind_walls = BehindWalls { now, coverage: &self.coverage, points: self.places.iteration(now).world };
         let terms = Terms {
             volume,
+            volume_in_units: volume / self.settings.unit,
+            to_step: 1.0 / self.settings.step_unit,
             own: self.kernel.value(0.0) * volume - 1.0,
             stiffness: now.stiffness,
             limit: now.pressure_limit * now.dt * now.dt,
@@ -100,7 +104,7 @@ impl<K: Shape> Density<K> {
         passes::correction(now.pairs(), self.kernel.shape(), positions, &self.step, records, sums);
         let (sums, steps, walls) = (&self.sums.gradient, &self.step, &self.wall_gradient);
         let (volume, inverse_masses) = (self.settings.volume, now.particles.inverse_masses());
-        let rows = now.particles.listed();
+        let (rows, unit) = (now.particles.listed(), self.settings.step_unit);
         // The admitted pressures accelerate to this speed at most (Bernoulli). The limit cuts the displacements of a
         // crushed heap where the step is too long for them.
         let farthest = (2.0 * now.pressure_limit).sqrt() * now.dt;
@@ -109,7 +113,7 @@ impl<K: Shape> Density<K> {
             let (sums, walls) = (&sums[rows.clone()], &walls[rows.clone()]);
             let (steps, inverse_masses) = (&steps[rows.clone()], &inverse_masses[rows]);
             for k in 0..displacements.len() {
-                let step = inverse_masses[k] * (sums[k] * volume + walls[k] * steps[k]);
+                let step = unit * inverse_masses[k] * (sums[k] * volume + walls[k] * steps[k]);
                 displacements[k] -= at_most(step, farthest);
             }
         });
@@ -135,7 +139,7 @@ impl<K: Shape> Density<K> {
     /// The forces of the same multipliers on the samples of bodies. Run after [`correct`](Self::correct).
     pub(super) fn load_bodies(&self, now: Substep<'_>, out: &mut Corrections) {
         let (sums, volume, phases) = (&self.sums.gradient, self.settings.volume, now.particles.phases());
-        let share = self.settings.velocity_share;
+        let share = self.settings.velocity_share * self.settings.step_unit;
         now.parallelism.update(out.loads_mut(), |i, load| {
             if phases[i] == Phase::Rigid {
                 *load -= sums[i] * (volume * share);
@@ -150,11 +154,30 @@ impl<K: Shape> Density<K> {
         }
         let positions = self.places.iteration(now).world.gradient;
         let (steps, inverse_masses) = (&self.step, now.particles.inverse_masses());
-        let share = self.settings.velocity_share;
+        let share = self.settings.velocity_share * self.settings.step_unit;
         for (row, &position) in positions.iter().enumerate() {
             if steps[row] != 0.0 && inverse_masses[row] > 0.0 {
                 now.walls.shares(position, &self.coverage, |wall, slope| {
                     out.wall_loads_mut()[usize::from(wall)] += wide(slope * (steps[row] * share));
+                });
+            }
+        }
+    }
+
+    /// The forces of the same multipliers on bodies that are walls by their outlines.
+    pub(super) fn load_outlines(&self, now: Substep<'_>, out: &mut Corrections) {
+        if out.outline_loads().is_empty() {
+            return;
+        }
+        let points = self.places.iteration(now).world;
+        let moment = if points.other_gradient().is_some() { Moment::Start } else { Moment::End };
+        let (steps, inverse_masses) = (&self.step, now.particles.inverse_masses());
+        let share = self.settings.velocity_share * self.settings.step_unit;
+        for (row, &position) in points.gradient[..self.wall_gradient.len()].iter().enumerate() {
+            if steps[row] != 0.0 && inverse_masses[row] > 0.0 && self.wall_gradient[row] != Vector::ZERO {
+                now.outlines.each_near(position, moment, |near| {
+                    let arm = now.outlines.arm(near.outline, position, moment);
+                    out.outline_loads_mut()[near.outline].add(wide(near.gradient * (steps[row] * share)), arm);
                 });
             }
         }
@@ -224,7 +247,8 @@ impl<S: Space, K: Shape> Work for Measured<'_, S, K> {
             for run in now.neighbors.runs_near(point).iter() {
                 near.weigh(&at, run, &mut sums);
             }
-            *out = scale * sums.weight() + now.walls.coverage(point, &density.coverage).0 - 1.0;
+            let covered = now.walls.coverage(point, &density.coverage).0 + now.outlines.coverage(point, Moment::End).0;
+            *out = scale * sums.weight() + covered - 1.0;
         }
     }
 }
@@ -239,12 +263,20 @@ struct BehindWalls<'a> {
 impl BehindWalls<'_> {
     /// The parts where the density is taken, and their gradients where gradients are taken [1/m].
     fn fill(&self, first: usize, parts: &mut [Real], slopes: &mut [Vector]) {
-        let (walls, coverage) = (self.now.walls, self.coverage);
+        let walls = self.now.walls;
         parts.fill(0.0);
         slopes.fill(Vector::ZERO);
-        if walls.is_empty() {
-            return;
+        let rows = first..first + parts.len();
+        if !walls.is_empty() {
+            self.fill_walls(first, parts, slopes);
         }
+        if !self.now.outlines.is_empty() {
+            self.add_outlines(rows, parts, slopes);
+        }
+    }
+
+    fn fill_walls(&self, first: usize, parts: &mut [Real], slopes: &mut [Vector]) {
+        let (walls, coverage) = (self.now.walls, self.coverage);
         let (rows, reach) = (first..first + parts.len(), coverage.radius());
         let mut distances = [0.0; CHUNK_ROWS];
         let mut near = |points: &[Vector], visit: &mut dyn FnMut(usize, (Real, Vector))| {
@@ -260,6 +292,20 @@ impl BehindWalls<'_> {
             near(&positions[rows], &mut |k, behind| slopes[k] = behind.1);
         }
     }
+
+    fn add_outlines(&self, rows: Range<usize>, parts: &mut [Real], slopes: &mut [Vector]) {
+        let outlines = self.now.outlines;
+        let elsewhere = self.points.other_gradient();
+        outlines.each_seen(&self.points.value[rows.clone()], Moment::End, |k, near| {
+            parts[k] += near.part;
+            if elsewhere.is_none() {
+                slopes[k] += near.gradient;
+            }
+        });
+        if let Some(positions) = elsewhere {
+            outlines.each_seen(&positions[rows], Moment::Start, |k, near| slopes[k] += near.gradient);
+        }
+    }
 }
 
 /// What all rows have in common.
@@ -267,6 +313,10 @@ impl BehindWalls<'_> {
 struct Terms {
     /// Weight of one neighbour [m^2].
     volume: Real,
+    /// The same over the unit of the responses.
+    volume_in_units: Real,
+    /// From a change of a multiplier to a step in its unit.
+    to_step: Real,
     /// Contribution of a row itself to its density error, less the rest density.
     own: Real,
     /// Part of the relaxation that counts.
@@ -291,7 +341,7 @@ struct Relaxed<'a> {
 impl Relaxed<'_> {
     #[inline(always)]
     fn relax(&mut self, terms: Terms, material: impl Fn(usize) -> DensityMaterial) {
-        let Terms { volume, own, stiffness, limit } = terms;
+        let Terms { volume, volume_in_units, to_step, own, stiffness, limit } = terms;
         let rows = self.error.len();
         let (value, gradient, response) = (&self.value[..rows], &self.gradient[..rows], &self.response[..rows]);
         let (inverse_mass, wall) = (&self.inverse_mass[..rows], &self.wall[..rows]);
@@ -299,9 +349,10 @@ impl Relaxed<'_> {
         for k in 0..rows {
             error[k] += volume * value[k] + own;
             let gradient = gradient[k] * volume + wall[k];
-            let response = inverse_mass[k] * gradient.length_squared() + volume * volume * response[k];
+            let response =
+                inverse_mass[k] * gradient.length_squared() + volume_in_units * volume_in_units * response[k];
             let new = material(k).multiplier(multiplier[k], error[k], response, inverse_mass[k], stiffness, limit);
-            step[k] = new - multiplier[k];
+            step[k] = (new - multiplier[k]) * to_step;
             multiplier[k] = new;
         }
     }

@@ -62,7 +62,7 @@ impl Contacts {
 
     /// Removes overlap from the positions, without changing any velocity.
     pub fn depenetrate(&mut self, bodies: &mut Bodies) {
-        let (how, dt) = (&self.settings.depenetration, self.dt);
+        let (how, fall) = (&self.settings.depenetration, 2.0 * self.gravity * self.dt * self.dt);
         let sizes = &bodies.sizes;
         let at_once = self.solver.at_once();
         self.corrections.clone_from(&bodies.displacements);
@@ -74,7 +74,7 @@ impl Contacts {
             |contact, cache, motion| {
                 let size = sizes[contact.a as usize];
                 let size = if contact.b == NONE { size } else { size.min(sizes[contact.b as usize]) };
-                contact.separate(cache, motion, how, size, dt)
+                contact.separate(cache, motion, how, size, fall)
             },
             |linked, motion| linked.separate(poses, displacements, motion),
         );

@@ -6,7 +6,7 @@ use super::linked::Linked;
 use super::manifold::Contact;
 use super::union_find::UnionFind;
 use crate::rigid::{Bodies, Twist};
-use crate::scene::{SLEEP_DELAY, SLEEP_SPEED};
+use crate::scene::SLEEP_SPEED;
 
 /// When bodies fall asleep.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -20,7 +20,7 @@ pub struct SleepSettings {
 
 impl Default for SleepSettings {
     fn default() -> Self {
-        SleepSettings { speed: SLEEP_SPEED, delay: SLEEP_DELAY }
+        SleepSettings { speed: SLEEP_SPEED, delay: 0.5 }
     }
 }
 

@@ -329,20 +329,21 @@ impl Contact {
         self.rolling_impulse = moment;
     }
 
-    /// The push that removes overlap from the positions; `size` is the size of the smaller body [m].
+    /// The push that removes overlap from the positions; `size` is the size of the smaller body, and
+    /// `fall` twice the gravity times the square of the substep [m].
     pub fn separate(
         &self,
         cache: &ContactCache,
         displacements: &[Twist],
         how: &Depenetration,
         size: f64,
-        dt: f64,
+        fall: f64,
     ) -> Push {
         let (a, b) = (entry(displacements, self.a), entry(displacements, self.b));
         let mut lacking = [0.0; 2];
         for (k, point) in self.points().iter().enumerate() {
             let (gap, flown) = (point.gap + self.opening(point, &a, &b), cache.rebound[k].flown);
-            lacking[k] = if flown > 0.0 { (gap - flown).min(0.0) } else { how.lacking(-gap, size, dt) };
+            lacking[k] = if flown > 0.0 { (gap - flown).min(0.0) } else { how.lacking(-gap, size, fall) };
         }
         if lacking == [0.0; 2] {
             return Push::default();

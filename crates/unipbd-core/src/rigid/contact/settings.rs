@@ -50,21 +50,24 @@ pub struct Depenetration {
     pub deep: f64,
     /// Fraction of the deeper overlap removed in a substep.
     pub deep_fraction: f64,
-    /// Maximum speed of the overlap removal [m/s].
+    /// Maximum speed of the overlap removal, relative to that of a fall from the size of the smaller body. Without
+    /// gravity there is no limit.
     pub speed: f64,
 }
 
 impl Default for Depenetration {
     fn default() -> Self {
-        Depenetration { slop: 1e-4, fraction: 0.1, deep: 0.01, deep_fraction: 0.4, speed: 3.0 }
+        Depenetration { slop: 1e-4, fraction: 0.1, deep: 0.01, deep_fraction: 0.4, speed: 1.0 }
     }
 }
 
 impl Depenetration {
-    /// Minus the part of an overlap that a substep of length `dt` [s] removes between bodies of this size [m].
-    pub(super) fn lacking(&self, overlap: f64, size: f64, dt: f64) -> f64 {
+    /// Minus the part of an overlap that a substep removes between bodies of this size [m]. `fall` is twice the
+    /// gravity times the square of the substep [m].
+    pub(super) fn lacking(&self, overlap: f64, size: f64, fall: f64) -> f64 {
+        let farthest = if fall > 0.0 { self.speed * (fall * size).sqrt() } else { f64::INFINITY };
         let overlap = overlap - self.slop * size;
         let deep = (overlap - self.deep * size).max(0.0);
-        -(self.fraction * overlap + (self.deep_fraction - self.fraction) * deep).clamp(0.0, self.speed * dt)
+        -(self.fraction * overlap + (self.deep_fraction - self.fraction) * deep).clamp(0.0, farthest)
     }
 }

@@ -35,7 +35,7 @@ fn check_contacts(checker: &mut Checker) {
     checker.range(path.then("iterations"), f64::from(contacts.iterations), Allowed::Between(1.0, 4.0), hint);
     let hint = "relative to sqrt(gravity x size); 0.02 by default";
     checker.range(path.then("sleep_speed"), contacts.sleep_speed, Allowed::NotNegative, hint);
-    checker.range(path.then("sleep_delay"), contacts.sleep_delay, Allowed::NotNegative, "in seconds");
+    checker.range(path.then("sleep_delay"), contacts.sleep_delay.unwrap_or(0.0), Allowed::NotNegative, "in seconds");
 }
 
 /// Exactly one outline, and one that has an area.

@@ -1,6 +1,7 @@
 //! Values so large or so small that a run would diverge within a few frames, whatever else the scene holds.
 
 use super::checker::{Allowed, Checker, entries, rounded};
+use super::settings::FRAME_RATES;
 use crate::scene::KeyPath;
 
 /// Farthest that a force may take a particle from rest in one frame [spacings].
@@ -35,7 +36,7 @@ pub(super) fn check(checker: &mut Checker) {
         mass(checker, &path, gas.density, gas.particle_mass);
         pulls.push((path.then("gravity_factor"), gas.gravity_factor * strength(scene.gravity)));
         for (key, value) in [("vorticity", gas.vorticity), ("baroclinic", gas.baroclinic)] {
-            let hint = "a factor without a unit: 1 is strong";
+            let hint = "1 is strong";
             checker.range(path.then(key), value, Allowed::Between(-STRENGTH, STRENGTH), hint);
         }
     }
@@ -57,7 +58,7 @@ pub(super) fn check(checker: &mut Checker) {
 fn check_air(checker: &mut Checker) {
     let Some(spacing) = checker.spacing else { return };
     let (gusts, limit) = (checker.scene.environment.gusts, GALE * spacing * checker.scene.fps);
-    if gusts.is_finite() && checker.scene.fps >= 1.0 && gusts > limit {
+    if gusts.is_finite() && checker.scene.fps >= FRAME_RATES.0 && gusts > limit {
         let message = format!("{} m/s is more than {GALE} spacings per frame ({} m/s)", rounded(gusts), rounded(limit));
         checker.problem(KeyPath::key("environment").then("gusts"), message, "a gale has 30 m/s");
     }
@@ -80,7 +81,7 @@ fn check_pull(checker: &mut Checker, path: KeyPath, acceleration: f64) {
     // Gravity by itself has a limit of its own.
     let (fps, own) = (checker.scene.fps, strength(checker.scene.gravity));
     let limit = (LEAP * spacing * fps * fps).max(own);
-    if acceleration.is_finite() && fps >= 1.0 && acceleration.abs() > limit {
+    if acceleration.is_finite() && fps >= FRAME_RATES.0 && acceleration.abs() > limit {
         let message = format!("accelerates by {} m/s^2; the limit is {} m/s^2", rounded(acceleration), rounded(limit));
         checker.problem(path, message, "lower it, or raise `fps`");
     }

@@ -8,7 +8,7 @@ const SPACING: (f64, f64) = (1e-6, 1e6);
 /// Longest run [s]: about 12 days, 60 million frames at the default rate.
 pub const LONGEST_DURATION: f64 = 1e6;
 /// Output frames per second [1/s].
-pub const FRAME_RATES: (f64, f64) = (1.0, 10_000.0);
+pub const FRAME_RATES: (f64, f64) = (1e-3, 1e6);
 /// Largest acceleration [m/s^2] and speed [m/s]: far above any sensible scene, far below overflow.
 const HUGE: f64 = 1e9;
 

@@ -4,6 +4,7 @@ use super::checker::{Allowed, Checker, entries, number, rounded};
 use super::materials::check_reference;
 use super::names::check_unique;
 use super::regions::check_schedule;
+use super::settings::FRAME_RATES;
 use crate::phase::Phase;
 use crate::scene::{Emitter, KeyPath, PointMotion, Points, Substeps};
 
@@ -119,7 +120,7 @@ fn check_throw(checker: &mut Checker, path: KeyPath, speed: f64) {
     let scene = checker.scene;
     let Some(spacing) = checker.spacing else { return };
     let leap = speed / scene.fps / spacing;
-    if scene.fps >= 1.0 && leap.is_finite() && leap > FARTHEST {
+    if scene.fps >= FRAME_RATES.0 && leap.is_finite() && leap > FARTHEST {
         let message = format!("{} m/s is too fast: {} spacings in one frame", rounded(speed), rounded(leap));
         checker.problem(path, message, "lower the speed, or raise `fps`");
     }
@@ -134,7 +135,7 @@ fn check_speed(checker: &mut Checker, path: KeyPath, speed: f64) {
     };
     let Some(spacing) = checker.spacing else { return };
     let leap = speed / scene.fps / f64::from(count) / spacing;
-    let settings_are_fine = scene.fps >= 1.0 && count >= 1 && scene.solver.kernel_radius >= 1.5;
+    let settings_are_fine = scene.fps >= FRAME_RATES.0 && count >= 1 && scene.solver.kernel_radius >= 1.5;
     if settings_are_fine && leap.is_finite() && leap > scene.solver.kernel_radius {
         let message = format!(
             "{} m/s is too fast: {} spacings in one substep ({count} substeps per frame, {} frames per second)",

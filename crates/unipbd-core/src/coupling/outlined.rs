@@ -1,0 +1,137 @@
+//! Bodies whose outlines are walls of the fluid: static and kinematic ones, which nothing moves that the fluid does.
+//! They have no samples among the particles.
+
+use super::RigidBodies;
+use crate::constraints::OutlineLoad;
+use crate::math::{Vector, Vector64, vector};
+use crate::particles::Particles;
+use crate::rigid::{Body, BodyKind, Pose};
+use crate::shapes::{Shape, edges};
+use crate::walls::{OutlineSpec, Outlines, Place};
+use std::f64::consts::PI;
+
+/// Bodies thinner than this, in spacings, keep samples: they cover too little of a kernel to hold a fluid.
+const THIN: f64 = 1.0;
+
+/// Static bodies of this thickness, in spacings, are walls of the pressure grid: two of its cells. Thinner ones could
+/// lie between the corners of cells.
+const WALL_OF_GRID: f64 = 4.0;
+
+/// How fluids and particles meet the bodies of a scene.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Met {
+    /// Id of the first sample.
+    pub first_sample: u32,
+    /// Whether bodies that the fluid does not move are walls to it.
+    pub outlines: bool,
+}
+
+/// How a fluid meets a body.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Meeting {
+    /// Not at all.
+    #[default]
+    None,
+    /// By samples among the particles.
+    Samples,
+    /// By its outline; the pressure grid moves it, or moves with it.
+    Outline,
+    /// By its outline, which is a wall of the pressure grid too.
+    FixedOutline,
+}
+
+/// Whether a body is a wall to fluids by its outline, where the scene lets it.
+pub(crate) fn is_outlined(body: &Body, spacing: f64) -> bool {
+    body.kind != BodyKind::Dynamic && !body.samples.is_empty() && thickness(body) >= THIN * spacing
+}
+
+/// The shape of a body about its centre of mass.
+pub(super) fn shape(body: &Body) -> Shape {
+    match body.radius > 0.0 {
+        true => Shape::Disc { radius: body.radius },
+        false => Shape::Polygon(body.outline.clone()),
+    }
+}
+
+/// Twice the area over the perimeter: the thickness of a long body [m].
+fn thickness(body: &Body) -> f64 {
+    let perimeter = match body.radius > 0.0 {
+        true => 2.0 * PI * body.radius,
+        false => edges(&body.outline).map(|(from, to)| (to - from).length()).sum(),
+    };
+    2.0 * shape(body).moments().area / perimeter
+}
+
+impl RigidBodies {
+    /// Whether the fluid meets a body by its outline.
+    pub(crate) fn by_outline(&self, body: u32) -> bool {
+        let (first, end) = self.sample_ids[body as usize];
+        self.outlines && first == end && !self.bodies.samples(body).is_empty()
+    }
+
+    /// Finds the bodies that the fluid meets: bodies came, changed or went.
+    pub(super) fn find_met(&mut self) {
+        let sampled = |body: u32| self.sample_ids[body as usize].0 < self.sample_ids[body as usize].1;
+        let met = |body: u32| match (sampled(body), self.by_outline(body)) {
+            (true, _) => Meeting::Samples,
+            (_, true) if self.is_wall_of_grid(body) => Meeting::FixedOutline,
+            (_, true) => Meeting::Outline,
+            _ => Meeting::None,
+        };
+        self.met = (0..self.bodies.len() as u32).map(met).collect();
+    }
+
+    fn is_wall_of_grid(&self, body: u32) -> bool {
+        let view = &self.views()[body as usize];
+        view.kind == BodyKind::Static && thickness(view) >= WALL_OF_GRID * self.spacing
+    }
+
+    /// Takes the outlines that the fluid meets.
+    pub(crate) fn set_outlines(&self, outlines: &mut Outlines) {
+        let met = (0..self.bodies.len() as u32).filter(|&body| self.by_outline(body));
+        outlines.set(met.map(|body| OutlineSpec {
+            body,
+            shape: shape(&self.views()[body as usize]),
+            still: self.views()[body as usize].kind == BodyKind::Static,
+            fixed: self.met[body as usize] == Meeting::FixedOutline,
+        }));
+        self.place_outlines(outlines);
+        outlines.find_touching();
+    }
+
+    /// Puts outlines where their bodies are, and where they are predicted to be.
+    pub(crate) fn place_outlines(&self, outlines: &mut Outlines) {
+        let place = |pose: Pose| Place { position: pose.position, axis: Vector64::from_angle(pose.angle) };
+        outlines.place(|body| [place(self.bodies.pose(body)), place(self.bodies.predicted_pose(body))]);
+    }
+
+    /// Adds the forces of the fluid on outlines to their bodies; `loads` are those times dt^2.
+    pub(crate) fn take_outline_loads(&mut self, loads: &[OutlineLoad], outlines: &Outlines, dt: f64) {
+        let per_square = 1.0 / (dt * dt);
+        for (outline, load) in loads.iter().enumerate() {
+            if *load != OutlineLoad::default() {
+                self.bodies.load(outlines.body(outline), load.force * per_square, load.torque * per_square, dt);
+            }
+        }
+    }
+
+    /// Finds the particles that are inside bodies by their outlines.
+    pub(super) fn find_inside(&self, particles: &Particles, outlines: &Outlines, mut visit: impl FnMut(usize, u32)) {
+        if outlines.is_empty() {
+            return;
+        }
+        let chunks = particles.position[..particles.awake()].chunks(crate::parallel::CHUNK_ROWS);
+        for (number, points) in chunks.enumerate() {
+            let first = number * crate::parallel::CHUNK_ROWS;
+            outlines.each_inside(points, |k, body| visit(first + k, body));
+        }
+    }
+
+    /// Visits the places of the samples that bodies met by their outlines do not have: matter in their cells.
+    pub(crate) fn each_filled(&self, mut visit: impl FnMut(Vector)) {
+        for body in (0..self.bodies.len() as u32).filter(|&body| self.met[body as usize] == Meeting::Outline) {
+            let pose = self.bodies.pose(body);
+            self.bodies.samples(body).iter().for_each(|&sample| visit(vector(pose.apply(sample))));
+        }
+    }
+}
