@@ -14,5 +14,6 @@ mod pressure_grid;
 mod shape_matching;
 mod smoke;
 mod stages;
+mod surface_tension;
 mod tunnelling;
 mod walls;

@@ -6,11 +6,10 @@ mod density;
 mod ropes;
 mod waves;
 
-use crate::constraints::{Adhesion, ConstraintGroup, ShapeMatching};
+use crate::constraints::{ConstraintGroup, ShapeMatching, SurfaceTension, Viscosity};
 use crate::coupling::RigidBodies;
 use crate::effects::{
-    Baroclinic, Cohesion, Conduction, Drag, DragLaw, Effect, Heating, ShearViscosity, SmokeAdvection,
-    VorticityConfinement, Xsph,
+    Baroclinic, Conduction, Drag, DragLaw, Effect, Heating, SmokeAdvection, VorticityConfinement, Xsph,
 };
 use crate::math::{Vector, Vector64, real, vector};
 use crate::neighbors::{ListCost, Neighbors, SearchPositions};
@@ -154,8 +153,11 @@ fn groups(
 ) -> Vec<Box<dyn ConstraintGroup>> {
     let mut groups: Vec<Box<dyn ConstraintGroup>> = Vec::new();
     // A force is applied before the constraints that act against it.
-    if let Some(adhesion) = Adhesion::new(scene) {
-        groups.push(Box::new(adhesion));
+    if let Some(tension) = SurfaceTension::new(scene) {
+        groups.push(Box::new(tension));
+    }
+    if let Some(viscosity) = Viscosity::new(scene) {
+        groups.push(Box::new(viscosity));
     }
     if scene.materials().any(|material| material.phase().is_fluid()) {
         groups.push(density.group);
@@ -172,10 +174,8 @@ fn effects(scene: &Scene, seed: u64) -> Vec<Box<dyn Effect>> {
     let wind = Rng::new(seed, WIND_STREAM).state();
     let effects = [
         boxed(Xsph::new(scene)),
-        boxed(ShearViscosity::new(scene)),
         boxed(Drag::new(scene, DragLaw::Thin, wind)),
         boxed(Drag::new(scene, DragLaw::Quadratic, wind)),
-        boxed(Cohesion::new(scene)),
         boxed(Baroclinic::new(scene)),
         boxed(Conduction::new(scene)),
         boxed(Heating::new(scene)),

@@ -85,6 +85,8 @@ pub(crate) struct Clock {
     pub pressure_limit: f64,
     /// Fraction of the full stiffness of the fluids.
     pub stiffness: f64,
+    /// Whether the start of the run is being settled.
+    pub settling: bool,
     /// Whether the last frame took fewer substeps than demanded.
     pub capped: bool,
     /// Fastest dense particle after the last substep [m/s].
@@ -366,6 +368,7 @@ impl World {
             time: clock.time,
             pressure_limit: clock.pressure_limit as Real,
             stiffness: clock.stiffness as Real,
+            settling: clock.settling,
             particles: &parts.particles,
             rows,
             neighbors: &parts.neighbors,
