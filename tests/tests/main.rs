@@ -16,4 +16,5 @@ mod smoke;
 mod stages;
 mod surface_tension;
 mod tunnelling;
+mod viscosity;
 mod walls;

@@ -79,6 +79,8 @@ pub struct Substep<'a> {
     pub rows: &'a RowIndex,
     /// Neighbours of the dense rows; built only where a group [needs](Needs::NEIGHBORS) it.
     pub neighbors: &'a Neighbors,
+    /// Ids of the samples of bodies that viscous fluids do not slip along: from the first to one past the last.
+    pub without_slip: &'a [(u32, u32)],
     /// Static walls.
     pub walls: &'a Walls,
     /// How to spread work over threads.

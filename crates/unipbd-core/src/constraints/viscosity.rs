@@ -11,6 +11,9 @@ use crate::walls::Coverage;
 
 /// Distances to a wall count as at least this many spacings.
 const LEAST_DISTANCE: f64 = 0.25;
+/// Factor on the shear of samples of bodies, which have the velocity of the body, not one that goes on linearly behind
+/// its surface: that of a plane wall over that of a lattice behind it, for a particle at half a spacing.
+const BODY_SHEAR: Real = 1.9;
 /// One explicit step is taken while the fastest decay of the lattice is at most this part of the stable one:
 /// disordered particles have larger eigenvalues.
 const EXPLICIT: f64 = 0.5;
@@ -21,13 +24,13 @@ const MOST_ITERATIONS: u32 = 1000;
 
 /// Physical viscosity nu: the Laplacian of Brookshaw 1985 and Morris et al. 1997,
 /// rho_i dv_i/dt = sum_j 2 V mu_ij (v_i - v_j) g_ij with grad W = g x and mu_ij the geometric mean of
-/// both, which keeps momentum; walls without slip add their share. Bodies slip.
+/// both, which keeps momentum; walls and bodies without slip add their share.
 ///
 /// It acts on the predicted velocities, gravity and others included, so that particles move as they would between
 /// viscosity and load. Short steps are explicit; long ones are implicit, v - dt L v = v', by conjugate gradients: L is
 /// symmetric with densities as weights, and every iterate keeps momentum.
 ///
-/// A group, not an effect: walls feel the opposite force.
+/// A group, not an effect: walls and bodies feel the opposite force, bodies that of the velocity that they have.
 pub struct Viscosity {
     kernel: Kernel,
     coverage: Coverage,
@@ -36,6 +39,8 @@ pub struct Viscosity {
     /// Square root of the dynamic viscosity by material [(kg/s)^1/2].
     root: Vec<Real>,
     density: Vec<Real>,
+    /// What stands for `root` in samples of bodies.
+    of_samples: Real,
     /// Largest rate at which a velocity difference decays [1/s].
     fastest: f64,
     /// Whether this substep's step has been taken: more iterations do not thicken.
@@ -70,6 +75,7 @@ impl Viscosity {
                 least_distance: real(LEAST_DISTANCE * scene.spacing),
                 density: scene.materials().map(|material| real(material.density().max(1e-30))).collect(),
                 fastest: fastest_decay(scene, &kernel),
+                of_samples: BODY_SHEAR * root.iter().copied().fold(0.0, Real::max),
                 root,
                 applied: false,
                 weights: Vec::new(),
@@ -93,14 +99,16 @@ impl Viscosity {
         self.direction.resize(rows, Vector::ZERO);
         self.residual.resize(particles.listed(), Vector::ZERO);
         self.sums.resize(particles.listed(), Vector::ZERO);
-        let root = &self.root;
+        let (root, of_samples) = (&self.root, self.of_samples);
         now.parallelism.fill(&mut self.weights, |row| match phases[row] {
+            Phase::Rigid if is_without_slip(now, row) => of_samples,
             Phase::Rigid => 0.0,
             _ => root[usize::from(materials[row])],
         });
         let inverse_dt = 1.0 / now.dt;
         now.parallelism.fill(&mut self.velocity, |row| {
-            if inverse_masses[row] > 0.0 { particles.displacement[row] * inverse_dt } else { velocities[row] }
+            let predicted = inverse_masses[row] > 0.0 || phases[row] == Phase::Rigid;
+            if predicted { particles.displacement[row] * inverse_dt } else { velocities[row] }
         });
     }
 
@@ -188,6 +196,31 @@ impl Viscosity {
         })
     }
 
+    /// The shear of the new velocities on the samples of bodies.
+    fn load_bodies(&self, now: Substep<'_>, out: &mut Corrections) {
+        if now.without_slip.is_empty() {
+            return;
+        }
+        let particles = now.particles;
+        let (positions, phases, periodic) = (particles.positions(), particles.phases(), now.neighbors.periodic());
+        let (weights, velocity) = (&self.weights, &self.velocity);
+        let scale = -2.0 * self.volume * self.volume * now.dt * now.dt;
+        now.parallelism.update(out.loads_mut(), |row, load| {
+            if phases[row] != Phase::Rigid || weights[row] == 0.0 {
+                return;
+            }
+            let mut sum = Vector::ZERO;
+            now.neighbors.for_each(row, |other| {
+                if phases[other] != Phase::Rigid && weights[other] > 0.0 {
+                    let apart = periodic.min_image(positions[row] - positions[other]);
+                    let strength = weights[other] * self.kernel.slope(apart.length());
+                    sum += (velocity[other] - velocity[row]) * strength;
+                }
+            });
+            *load += sum * (weights[row] * scale);
+        });
+    }
+
     /// The shear of the new velocities on the measured walls.
     fn load_walls(&self, now: Substep<'_>, out: &mut Corrections) {
         if out.wall_loads().is_empty() || !now.walls.any_without_slip() {
@@ -208,6 +241,12 @@ impl Viscosity {
             }
         }
     }
+}
+
+/// Whether a row is a sample of a body that fluids do not slip along.
+fn is_without_slip(now: Substep<'_>, row: usize) -> bool {
+    let id = now.particles.ids()[row];
+    now.without_slip.iter().any(|(first, end)| (*first..*end).contains(&id))
 }
 
 /// The field whose Laplacian is taken.
@@ -271,6 +310,7 @@ impl ConstraintGroup for Viscosity {
                 *displacement += velocity[row] * now.dt - particles.displacement[row];
             }
         });
+        self.load_bodies(now, out);
         self.load_walls(now, out);
     }
 }

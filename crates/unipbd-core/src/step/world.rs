@@ -372,6 +372,7 @@ impl World {
             particles: &parts.particles,
             rows,
             neighbors: &parts.neighbors,
+            without_slip: parts.rigid.as_ref().map_or(&[], RigidBodies::without_slip),
             walls: &parts.walls,
             parallelism: parts.parallelism,
         }
