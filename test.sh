@@ -47,6 +47,13 @@ logs() {
     "$python" tests/python/check_log.py "$out/open_gas.mcap" "$out/dam_break.mcap"
 }
 
+# Pages that play a run, in a headless browser from the npm registry.
+browser() {
+    cargo build --quiet -p unipbd-cli || return 1
+    npm --prefix tests/browser ci --silent --no-audit --no-fund || return 1
+    UNIPBD_COMMAND="${CARGO_TARGET_DIR:-$PWD/target}/debug/unipbd" npm --prefix tests/browser test --silent
+}
+
 # What a release consists of, built here: archive of the command, crates, wheel and source distribution, checked.
 release() {
     local python=target/python-tests/bin/python out=target/release-check
@@ -118,6 +125,7 @@ if command -v python3 >/dev/null; then
 else
     skip "logs, Python tests and documentation site" "no python3 here"
 fi
+if command -v npm >/dev/null; then part "replay page in a browser" browser; else skip "replay page in a browser" "no npm here"; fi
 command -v ffmpeg >/dev/null || skip "MP4 by a real ffmpeg" "no ffmpeg here"
 
 summary

@@ -33,7 +33,7 @@ myst_heading_anchors = 4
 myst_dmath_allow_space = False
 
 # The native module need not be built: every docstring is in Python.
-autodoc_mock_imports = ["unipbd._native", "gymnasium"]
+autodoc_mock_imports = ["unipbd._native", "gymnasium", "tomli"]
 autodoc_member_order = "bysource"
 autodoc_typehints = "signature"
 autodoc_default_options = {"members": True, "inherited-members": "Mapping,MutableMapping,Sequence,Exception,Env"}

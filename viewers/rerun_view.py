@@ -69,7 +69,7 @@ def blueprint(lower, upper):
     particles = rrb.Spatial3DView(
         name="Particles",
         origin="/",
-        contents=["/particles", "/boundary", "/bodies/samples/**"],
+        contents=["/particles", "/boundary", "/scene/**"],
         background=[16, 20, 24],
         line_grid=False,
         spatial_information=rrb.SpatialInformation(target_frame="world", show_axes=False),

@@ -1,7 +1,7 @@
 """The commands and the code of the documents: found, and run as a reader would.
 
 A page is run from top to bottom in a folder of its own, in which `unipbd` is the command of the installed package and
-`scenes` the folder of the repository. Blocks mean:
+`scenes` and `recipes` the folders of the repository. Blocks mean:
 
 - `toml` with a first line `# NAME.toml`: a file, checked by `unipbd check`; with `# NAME.toml, continued`: more of it;
 - `sh`: run by bash, which stops at the first command that fails;
@@ -81,7 +81,8 @@ class Folder:
 
     def __init__(self, place: Path) -> None:
         self.place = place
-        shutil.copytree(ROOT / "scenes", place / "scenes")
+        for folder in ("scenes", "recipes"):
+            shutil.copytree(ROOT / folder, place / folder)
         commands = place / ".commands"
         commands.mkdir()
         # What a clone offers, by the command that is installed already: same source, no build.

@@ -10,7 +10,7 @@ import pytest
 from conftest import ROOT
 
 EXAMPLES = ROOT / "crates" / "unipbd-py" / "examples"
-NEEDS = {"balance": "gymnasium", "pour": "gymnasium", "first_steps": "matplotlib"}
+NEEDS = {"balance": "gymnasium", "pour": "gymnasium", "first_steps": "matplotlib", "fit_cma": "cma"}
 WRITES = {"first_steps": "picture.png", "force_field": "picture.png", "trajectories": "data.npz", "session": "."}
 
 

@@ -28,6 +28,27 @@ pub struct Snapshot {
     pub bodies: Vec<Body>,
 }
 
+impl Snapshot {
+    /// Puts the rows in the order of their ids.
+    pub fn sort_by_id(&mut self) {
+        if self.ids.is_sorted() {
+            return;
+        }
+        let mut order: Vec<usize> = (0..self.ids.len()).collect();
+        order.sort_unstable_by_key(|&row| self.ids[row]);
+        fn sort<T: Copy>(column: &mut Vec<T>, order: &[usize]) {
+            *column = order.iter().map(|&row| column[row]).collect();
+        }
+        sort(&mut self.positions, &order);
+        sort(&mut self.phases, &order);
+        sort(&mut self.materials, &order);
+        self.velocities.iter_mut().for_each(|column| sort(column, &order));
+        self.density_errors.iter_mut().for_each(|column| sort(column, &order));
+        self.temperatures.iter_mut().for_each(|column| sort(column, &order));
+        sort(&mut self.ids, &order);
+    }
+}
+
 /// What stays the same over a run: what a picture or a log needs besides its frames.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Setting {

@@ -14,7 +14,7 @@ use crate::{convert, errors};
 /// One change, named by its key `change`.
 #[derive(Deserialize)]
 #[serde(tag = "change", rename_all = "snake_case", deny_unknown_fields)]
-enum Change {
+enum Request {
     Gravity { gravity: [f64; 2] },
     AddBody { body: Box<BodyDescription> },
     RemoveBody { body: u32 },
@@ -70,17 +70,17 @@ impl Values {
 pub fn with_changes(py: Python<'_>, mut edit: Edit, changes: Vec<Bound<'_, PyDict>>) -> PyResult<Edit> {
     for dict in changes {
         let value = Value::Table(convert::table(&dict)?);
-        let change = Change::deserialize(value).map_err(|error| errors::edit_message(py, error.message()))?;
+        let change = Request::deserialize(value).map_err(|error| errors::edit_message(py, error.message()))?;
         edit = match change {
-            Change::Gravity { gravity } => edit.set_gravity(gravity.into()),
-            Change::AddBody { body } => edit.add_body(*body),
-            Change::RemoveBody { body } => edit.remove_body(body),
-            Change::MoveBody { body, position, angle } => edit.move_body(body, position.into(), angle),
-            Change::ChangeBody { body, values } => edit.change_body(body, values.change()),
-            Change::PushBody { body, impulse, point } => edit.push_body(body, impulse.into(), Vector64::from(point)),
-            Change::AddJoint { joint } => edit.add_joint(*joint),
-            Change::RemoveJoint { joint } => edit.remove_joint(joint),
-            Change::SetMotor { joint, speed, limit } => {
+            Request::Gravity { gravity } => edit.set_gravity(gravity.into()),
+            Request::AddBody { body } => edit.add_body(*body),
+            Request::RemoveBody { body } => edit.remove_body(body),
+            Request::MoveBody { body, position, angle } => edit.move_body(body, position.into(), angle),
+            Request::ChangeBody { body, values } => edit.change_body(body, values.change()),
+            Request::PushBody { body, impulse, point } => edit.push_body(body, impulse.into(), Vector64::from(point)),
+            Request::AddJoint { joint } => edit.add_joint(*joint),
+            Request::RemoveJoint { joint } => edit.remove_joint(joint),
+            Request::SetMotor { joint, speed, limit } => {
                 let motor = speed.map(|speed| Motor { speed, max_torque: limit.unwrap_or(1e30) });
                 edit.set_motor(joint, motor)
             }

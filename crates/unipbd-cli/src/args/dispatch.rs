@@ -7,8 +7,24 @@ use unipbd_core::scene::nearest;
 
 use crate::exit::Failure;
 
-const COMMANDS: [&str; 10] =
-    ["run", "check", "expect", "info", "render", "bench", "schema", "completions", "man", "help"];
+const COMMANDS: [&str; 13] = [
+    "run",
+    "check",
+    "expect",
+    "info",
+    "render",
+    "export",
+    "recover",
+    "layout",
+    "bench",
+    "schema",
+    "completions",
+    "man",
+    "help",
+];
+
+/// Commands that only the Python package has.
+const COMMANDS_OF_PYTHON: [&str; 2] = ["dataset", "sweep"];
 
 /// Puts `run` in front of a scene that stands where a command is expected.
 ///
@@ -20,6 +36,11 @@ pub fn with_default_command(arguments: impl IntoIterator<Item = OsString>) -> Re
     };
     if first.to_str().is_some_and(|word| COMMANDS.contains(&word) || is_help_or_version(word)) {
         return Ok(arguments);
+    }
+    if let Some(command) = COMMANDS_OF_PYTHON.iter().find(|command| first == **command) {
+        return Err(Failure::usage(format!(
+            "\"unipbd {command}\" comes with the Python package: pip install \"unipbd[data]\""
+        )));
     }
     if is_log(Path::new(first)) {
         return Err(Failure::usage(log_is_no_scene(Path::new(first))));
@@ -88,6 +109,14 @@ mod tests {
             assert_eq!(completed(words).unwrap(), words);
         }
         assert_eq!(completed(&["unipbd", "-v", "info", "a.mcap"]).unwrap(), ["unipbd", "-v", "info", "a.mcap"]);
+    }
+
+    #[test]
+    fn commands_of_the_python_package_are_named() {
+        for word in ["dataset", "sweep"] {
+            let message = completed(&["unipbd", word, "a.toml"]).unwrap_err().message;
+            assert!(message.contains("pip install") && message.contains(word), "{message}");
+        }
     }
 
     #[test]

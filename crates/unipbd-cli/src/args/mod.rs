@@ -2,6 +2,7 @@
 
 mod bench;
 mod dispatch;
+mod logs;
 mod render;
 mod run;
 mod stop_on;
@@ -14,6 +15,7 @@ use clap_complete::Shell;
 
 pub use bench::BenchArgs;
 pub use dispatch::{is_log, log_is_no_scene, with_default_command};
+pub use logs::{ExportArgs, ExportFormat, LayoutArgs, RecoverArgs};
 pub use render::RenderArgs;
 pub use run::{LogArgs, RunArgs, SceneChanges};
 pub use stop_on::StopCondition;
@@ -47,11 +49,13 @@ Examples:
   unipbd run my_scene.toml --set spacing=0.05      run with another particle distance [m]
   unipbd bench my_scene.toml --threads 1,2         time a scene
   unipbd render open_gas.mcap -o plume.gif         make an animation of a log
+  unipbd export open_gas.mcap -o plume.npz         arrays for NumPy
   unipbd run my_scene.toml --json --no-record | jq .density_error_max";
 
 /// Run, inspect and draw 2D particle scenes: liquids, gas, smoke and rigid bodies.
 ///
-/// `unipbd SCENE.toml` is short for `unipbd run SCENE.toml`. Data goes to standard output, messages
+/// `unipbd SCENE.toml` is short for `unipbd run SCENE.toml`. The Python package adds `unipbd dataset`
+/// and `unipbd sweep`. Data goes to standard output, messages
 /// and progress to standard error.
 #[derive(Debug, Parser)]
 #[command(name = "unipbd", version, styles = STYLES, after_help = AFTER_HELP, max_term_width = 110)]
@@ -96,8 +100,14 @@ pub enum Command {
     /// Summarise a scene or a log
     #[command(after_help = "Examples:\n  unipbd info scenes/open_gas.toml\n  unipbd info open_gas.mcap --json")]
     Info(InfoArgs),
-    /// Draw a log (or a scene, which is run first) as PNG frames, GIF or MP4
+    /// Draw a log (or a scene, which is run first) as PNG frames, GIF, MP4 or a page
     Render(RenderArgs),
+    /// Write a log as CSV tables, NumPy arrays or VTK files
+    Export(ExportArgs),
+    /// Complete the log of a run that was killed
+    Recover(RecoverArgs),
+    /// Print a layout of Lichtblick and Foxglove that frames a log
+    Layout(LayoutArgs),
     /// Time a scene, by stage and number of threads
     Bench(BenchArgs),
     /// Print the JSON schema of scene files, for completion and checking in editors

@@ -12,6 +12,7 @@ use crate::render::{Background, ColorBy, Range, Style, View};
 const AFTER_HELP: &str = "\
 Examples:
   unipbd render open_gas.mcap -o plume.gif --width 480
+  unipbd render open_gas.mcap -o plume.html                   a page that plays in any browser
   unipbd render open_gas.mcap -o plume.mp4 --speed 0.5        half as fast as it happened
   unipbd render open_gas.mcap -o plume.png --time 1.5         one picture
   unipbd render open_gas.mcap -o pictures/ --every 10         numbered pictures
@@ -27,7 +28,7 @@ pub struct RenderArgs {
     /// A log (.mcap), or a scene (.toml) to run first
     #[arg(value_name = "LOG|SCENE")]
     pub source: PathBuf,
-    /// What to write: NAME.png (one picture), NAME_%04d.png or DIRECTORY/ (a picture per frame), NAME.gif, NAME.mp4
+    /// What to write: NAME.png (one picture), NAME_%04d.png or DIRECTORY/ (a picture per frame), NAME.gif, NAME.mp4, NAME.html
     ///
     /// MP4 needs ffmpeg.
     #[arg(short, long, value_name = "PATH")]
@@ -77,8 +78,8 @@ pub struct FrameArgs {
 #[derive(Clone, Debug, Args)]
 #[command(next_help_heading = "Look")]
 pub struct LookArgs {
-    /// What colours show: speed, density and temperature need a log recorded with the --fields
-    /// velocity, density and temperature
+    /// What colours show: density and temperature need a log recorded with these --fields, speed is taken from
+    /// positions where the log has no velocity
     #[arg(long, value_name = "QUANTITY", default_value = "material", value_parser = color_by())]
     pub color: ColorBy,
     /// Ends of the colour map, MIN..MAX, in the unit of the colour bar: m/s, or % for density
@@ -99,6 +100,15 @@ pub struct LookArgs {
     /// Leave out the simulated time
     #[arg(long)]
     pub no_time_stamp: bool,
+    /// Draw axes in metres
+    #[arg(long)]
+    pub axes: bool,
+    /// Draw a bar of a round length
+    #[arg(long)]
+    pub scale_bar: bool,
+    /// Name the materials and bodies
+    #[arg(long)]
+    pub legend: bool,
 }
 
 fn color_by() -> impl TypedValueParser<Value = ColorBy> {
@@ -116,7 +126,7 @@ fn background() -> impl TypedValueParser<Value = Background> {
     names.map(|name| if name == "light" { Background::Light } else { Background::Dark })
 }
 
-fn finite(text: &str) -> Result<f64, String> {
+pub(super) fn finite(text: &str) -> Result<f64, String> {
     number(text).ok_or_else(|| "expected a number".into())
 }
 

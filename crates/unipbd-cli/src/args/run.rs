@@ -114,8 +114,9 @@ pub struct LogArgs {
     pub force: bool,
     /// Columns to record besides position, id, phase and material: a list such as velocity,density
     ///
-    /// velocity [m/s], density (its error C = rho/rho0 - 1, as a fraction), temperature, or all.
-    /// Each makes the log larger: velocity about doubles it.
+    /// velocity [m/s], density (its error C = rho/rho0 - 1, as a fraction), temperature, or all three.
+    /// Each makes the log larger: velocity about doubles it. samples: the samples of bodies as the topic
+    /// /bodies/samples.
     #[arg(long, value_name = "FIELDS", default_value = "", hide_default_value = true)]
     pub fields: Fields,
     /// Write no log

@@ -5,9 +5,12 @@ mod check;
 mod completions;
 mod estimate;
 mod expect;
+mod export;
 mod info;
+mod layout;
 mod manual;
 mod recording;
+mod recover;
 mod render;
 mod run;
 mod scene;
@@ -25,6 +28,9 @@ pub fn execute(command: &Command, console: Console) -> Result<Exit, Failure> {
         Command::Expect(arguments) => expect::expect(arguments, console),
         Command::Info(arguments) => info::info(arguments, console),
         Command::Render(arguments) => render::render(arguments, console),
+        Command::Export(arguments) => export::export(arguments, console),
+        Command::Recover(arguments) => recover::recover(arguments, console),
+        Command::Layout(arguments) => layout::layout(arguments, console),
         Command::Bench(arguments) => bench::bench(arguments, console),
         Command::Schema => schema::schema(console),
         Command::Completions(arguments) => completions::completions(arguments, console),

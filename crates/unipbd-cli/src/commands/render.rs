@@ -9,7 +9,8 @@ use crate::interrupt;
 use crate::read::{Log, LogError};
 use crate::record::{Fields, is_input, same_file};
 use crate::render::{
-    self, ColorBy, Existing, Output, Range, RenderError, RenderJob, RenderOptions, Rendered, TimeStamp,
+    self, Annotations, ColorBy, Existing, Output, Range, RenderError, RenderJob, RenderOptions, Rendered, Speeds,
+    TimeStamp,
 };
 use crate::report::format::plural;
 use crate::report::{Console, Counter, Form};
@@ -50,6 +51,7 @@ fn job(arguments: &RenderArgs) -> RenderJob {
             range: look.range.unwrap_or(Range::Automatic),
             view: look.view,
             time_stamp: if look.no_time_stamp { TimeStamp::Hidden } else { TimeStamp::Shown },
+            annotations: Annotations { axes: look.axes, scale_bar: look.scale_bar, legend: look.legend },
         },
         ffmpeg: arguments.ffmpeg.clone(),
         ..RenderJob::new(&arguments.output)
@@ -59,7 +61,7 @@ fn job(arguments: &RenderArgs) -> RenderJob {
 /// Says so before a scene is run for an output that must not be replaced.
 fn refuse_existing(job: &RenderJob) -> Result<(), Failure> {
     match render::plan_output(&job.output)? {
-        Output::Picture(path) | Output::Gif(path) | Output::Mp4(path)
+        Output::Picture(path) | Output::Gif(path) | Output::Mp4(path) | Output::Replay(path)
             if job.existing == Existing::Keep && path.symlink_metadata().is_ok() =>
         {
             Err(RenderError::Exists(path).into())
@@ -99,6 +101,9 @@ fn announce(rendered: &Rendered, console: Console) -> Result<(), Failure> {
             "size": rendered.size,
             "fps": rendered.fps,
         }))?,
+        Form::Text if width == 0 => {
+            console.note(format_args!("{}: {}", rendered.path.display(), plural(rendered.frames, "frame")));
+        }
         Form::Text => console.note(format_args!(
             "{}: {} of {width} x {height} pixels",
             rendered.path.display(),
@@ -110,7 +115,7 @@ fn announce(rendered: &Rendered, console: Console) -> Result<(), Failure> {
 
 /// Where frames come from.
 enum Source {
-    Log(Box<Log>),
+    Log { log: Box<Log>, color: ColorBy },
     Scene { loaded: Box<LoadedScene>, options: BuildOptions, fields: Fields },
 }
 
@@ -118,7 +123,7 @@ impl Source {
     fn open(arguments: &RenderArgs) -> Result<Self, Failure> {
         if is_log(&arguments.source) {
             arguments.changes.refuse_for_log()?;
-            return Ok(Source::Log(Box::new(Log::open(&arguments.source)?)));
+            return Ok(Source::Log { log: Box::new(Log::open(&arguments.source)?), color: arguments.look.color });
         }
         let loaded = load(&arguments.source, &arguments.changes)?;
         let options = BuildOptions { threads: threads(arguments.threads)?, seed: None };
@@ -127,7 +132,7 @@ impl Source {
 
     fn setting(&self) -> Setting {
         match self {
-            Source::Log(log) => log.setting().clone(),
+            Source::Log { log, .. } => log.setting().clone(),
             Source::Scene { loaded, options, .. } => {
                 Simulation::new(&loaded.scene, options.clone()).setting(&loaded.scene, &loaded.path)
             }
@@ -136,15 +141,23 @@ impl Source {
 
     fn frame_count(&self) -> Option<u64> {
         match self {
-            Source::Log(log) => log.totals().map(|totals| totals.frames),
+            Source::Log { log, .. } => log.totals().map(|totals| totals.frames),
             Source::Scene { loaded, .. } => Some(crate::simulation::frame_count(&loaded.scene) + 1),
         }
     }
 
     fn frames(&self) -> Result<Box<dyn Iterator<Item = Result<Snapshot, Failure>>>, Failure> {
         let frames: Box<dyn Iterator<Item = Result<Snapshot, Failure>>> = match self {
-            Source::Log(log) => {
-                Box::new(log.frames()?.map(|frame| frame.map(|frame| frame.snapshot).map_err(Failure::from)))
+            Source::Log { log, color } => {
+                let mut speeds = Speeds::default();
+                let by_speed = *color == ColorBy::Speed;
+                Box::new(log.frames()?.map(move |frame| {
+                    let mut snapshot = frame?.snapshot;
+                    if by_speed {
+                        speeds.fill(&mut snapshot);
+                    }
+                    Ok(snapshot)
+                }))
             }
             Source::Scene { loaded, options, fields } => Box::new(SceneFrames {
                 simulation: Simulation::new(&loaded.scene, options.clone()),

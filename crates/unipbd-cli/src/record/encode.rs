@@ -131,15 +131,14 @@ impl Encoder {
             let cloud = messages::cloud(messages::WORLD.to_owned(), now, &samples, shapes::WALL_COLOR);
             frame.push(Topic::Boundary, now, &cloud);
         }
-        if new_shapes {
-            for (id, body) in (0..).zip(bodies).filter(|(_, body)| !body.samples.is_empty()) {
-                let cloud = messages::cloud(messages::body_frame(id), now, &body.samples, shapes::BODY_COLOR);
-                frame.push(Topic::BodySamples(id), now, &cloud);
-            }
-        }
         if first_walls || new_shapes {
             let update = shapes::scene_update(now, walls, bodies, self.described.len());
             frame.push(Topic::Scene, now, &update);
+        }
+        if self.fields.samples && bodies.iter().any(|body| !body.samples.is_empty()) {
+            let samples = shapes::body_samples(bodies);
+            let cloud = messages::cloud(messages::WORLD.to_owned(), now, &samples, shapes::BODY_COLOR);
+            frame.push(Topic::BodySamples, now, &cloud);
         }
         if !bodies.is_empty() || new_shapes {
             frame.push(Topic::Transforms, now, &messages::transforms(now, bodies));
@@ -216,8 +215,11 @@ impl Encoder {
         data.resize(self.order.len() * POINT_STRIDE, 0);
         for (key, bytes) in self.order.iter().zip(data.chunks_exact_mut(POINT_STRIDE)) {
             let row = row(*key);
-            let color = colors.get(usize::from(snapshot.materials[row]));
-            let color = color.copied().unwrap_or(rgba([200; 3], snapshot.phases[row]));
+            let material = colors.get(usize::from(snapshot.materials[row])).copied();
+            let color = match snapshot.phases[row] {
+                Phase::Rigid => shapes::BODY_COLOR,
+                phase => material.unwrap_or(rgba([200; 3], phase)),
+            };
             bytes.copy_from_slice(&messages::pack_point(snapshot.positions[row], color));
         }
         self.cloud.data = data.into();

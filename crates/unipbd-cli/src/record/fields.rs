@@ -11,15 +11,17 @@ pub struct Fields {
     pub density: bool,
     /// Temperatures.
     pub temperature: bool,
+    /// The samples of bodies, as a topic of their own.
+    pub samples: bool,
 }
 
 impl Fields {
-    /// Every field.
-    pub const ALL: Fields = Fields { velocity: true, density: true, temperature: true };
+    /// Every column.
+    pub const ALL: Fields = Fields { velocity: true, density: true, temperature: true, samples: false };
 
-    /// Whether any field is asked for.
+    /// Whether any column is asked for.
     pub fn any(self) -> bool {
-        self != Fields::default()
+        self.velocity || self.density || self.temperature
     }
 }
 
@@ -29,7 +31,7 @@ pub struct UnknownField(pub String);
 
 impl fmt::Display for UnknownField {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(f, "unknown field \"{}\": expected velocity, density, temperature or all", self.0)
+        write!(f, "unknown field \"{}\": expected velocity, density, temperature, samples or all", self.0)
     }
 }
 
@@ -46,7 +48,8 @@ impl FromStr for Fields {
                 "velocity" => fields.velocity = true,
                 "density" => fields.density = true,
                 "temperature" => fields.temperature = true,
-                "all" => fields = Fields::ALL,
+                "samples" => fields.samples = true,
+                "all" => fields = Fields { samples: fields.samples, ..Fields::ALL },
                 _ => return Err(UnknownField(word.to_owned())),
             }
         }
@@ -56,7 +59,12 @@ impl FromStr for Fields {
 
 impl fmt::Display for Fields {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let named = [(self.velocity, "velocity"), (self.density, "density"), (self.temperature, "temperature")];
+        let named = [
+            (self.velocity, "velocity"),
+            (self.density, "density"),
+            (self.temperature, "temperature"),
+            (self.samples, "samples"),
+        ];
         let words: Vec<&str> = named.into_iter().filter(|(asked, _)| *asked).map(|(_, word)| word).collect();
         f.write_str(&words.join(","))
     }
@@ -71,7 +79,7 @@ mod tests {
         assert_eq!("".parse(), Ok(Fields::default()));
         assert_eq!("all".parse(), Ok(Fields::ALL));
         let some: Fields = "density, velocity".parse().unwrap();
-        assert_eq!(some, Fields { velocity: true, density: true, temperature: false });
+        assert_eq!(some, Fields { velocity: true, density: true, ..Fields::default() });
         assert_eq!(some.to_string(), "velocity,density");
         assert_eq!("speed".parse::<Fields>(), Err(UnknownField("speed".into())));
     }

@@ -9,7 +9,7 @@
 //! | `/scene` | foxglove.SceneUpdate: walls, and bodies in their frames | once, and when a shape changed |
 //! | `/tf` | foxglove.FrameTransforms: all bodies, `world` to `body/<id>` | every frame |
 //! | `/bodies` | unipbd.Bodies | every frame |
-//! | `/bodies/samples/<id>` | foxglove.PointCloud in the frame of the body | once, and when a shape changed |
+//! | `/bodies/samples` | foxglove.PointCloud: samples of all bodies where they are | every frame, on request |
 //! | `/log` | foxglove.Log | events |
 //!
 //! All messages are protobuf. Topics a run does not use are absent. Particles are in the order of
@@ -53,6 +53,7 @@ pub(crate) use body_message::kind_name;
 pub(crate) use header::{LOG_FORMAT, METADATA, SCENE_ATTACHMENT, log_format};
 pub(crate) use messages::{Level, Log, POINT_STRIDE, PointCloud, unpack_position};
 pub(crate) use quantity_message::read_diagnostics;
+pub(crate) use shapes::outline as outline_to_draw;
 pub(crate) use topic::Topic;
 
 /// Writes a log frame by frame; compression and output happen on a thread of their own.

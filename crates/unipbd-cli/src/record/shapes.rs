@@ -81,12 +81,21 @@ fn body_entity(time: u64, id: u32, body: &Body) -> SceneEntity {
 }
 
 /// Corners of a body; those of a disc are spread around it.
-fn outline(body: &Body) -> Vec<Vector64> {
+pub(crate) fn outline(body: &Body) -> Vec<Vector64> {
     if body.radius <= 0.0 {
         return body.outline.clone();
     }
     let corner = |number: u32| Vector64::from_angle(TAU * f64::from(number) / f64::from(DISC_CORNERS)) * body.radius;
     (0..DISC_CORNERS).map(corner).collect()
+}
+
+/// The samples of all bodies where they are.
+pub(crate) fn body_samples(bodies: &[Body]) -> Vec<Vector64> {
+    let placed = |body: &Body| {
+        let (place, turn) = (body.position, Vector64::from_angle(body.angle));
+        body.samples.iter().map(move |sample| place + turn.rotate(*sample)).collect::<Vec<_>>()
+    };
+    bodies.iter().filter(|body| !body.removed).flat_map(placed).collect()
 }
 
 /// Corner triples that fill a simple counter-clockwise polygon, by cutting ears (Meisters 1975).

@@ -5,7 +5,7 @@ use super::{messages, schema};
 pub(crate) enum Topic {
     Particles,
     Boundary,
-    BodySamples(u32),
+    BodySamples,
     Scene,
     Transforms,
     Diagnostics,
@@ -20,7 +20,7 @@ impl Topic {
         match self {
             Topic::Particles => "/particles".to_owned(),
             Topic::Boundary => "/boundary".to_owned(),
-            Topic::BodySamples(id) => format!("/bodies/samples/{id}"),
+            Topic::BodySamples => "/bodies/samples".to_owned(),
             Topic::Scene => "/scene".to_owned(),
             Topic::Transforms => "/tf".to_owned(),
             Topic::Diagnostics => "/diagnostics".to_owned(),
@@ -32,11 +32,8 @@ impl Topic {
 
     /// The topic with this name, if it is one of ours.
     pub(crate) fn from_name(name: &str) -> Option<Topic> {
-        use Topic::{Bodies, Boundary, Columns, Diagnostics, Log, Particles, Scene, Transforms};
-        if let Some(id) = name.strip_prefix("/bodies/samples/") {
-            return id.parse().ok().map(Topic::BodySamples);
-        }
-        [Particles, Boundary, Scene, Transforms, Diagnostics, Columns, Bodies, Log]
+        use Topic::{Bodies, BodySamples, Boundary, Columns, Diagnostics, Log, Particles, Scene, Transforms};
+        [Particles, Boundary, BodySamples, Scene, Transforms, Diagnostics, Columns, Bodies, Log]
             .into_iter()
             .find(|topic| topic.name() == name)
     }
@@ -44,7 +41,7 @@ impl Topic {
     /// Name and descriptor set of its messages.
     pub(crate) fn schema(self) -> (String, Vec<u8>) {
         match self {
-            Topic::Particles | Topic::Boundary | Topic::BodySamples(_) => messages::schema::<messages::PointCloud>(),
+            Topic::Particles | Topic::Boundary | Topic::BodySamples => messages::schema::<messages::PointCloud>(),
             Topic::Scene => messages::schema::<messages::SceneUpdate>(),
             Topic::Transforms => messages::schema::<messages::FrameTransforms>(),
             Topic::Log => messages::schema::<messages::Log>(),

@@ -58,6 +58,16 @@ impl Image {
         }
     }
 
+    /// Puts these rows of a picture where the first of them shall be, columns and rows from the upper left corner.
+    pub(super) fn put(&mut self, inner: &Image, rows: std::ops::Range<u32>, [left, top]: [u32; 2]) {
+        let row_bytes = inner.width as usize * 4;
+        for (row, to) in rows.zip(top as usize..) {
+            let from = row as usize * row_bytes;
+            let at = (to * self.width as usize + left as usize) * 4;
+            self.pixels[at..at + row_bytes].copy_from_slice(&inner.pixels[from..from + row_bytes]);
+        }
+    }
+
     /// Lays a colour over the pixel number `index`; `opacity` from 0 to 1.
     #[inline]
     pub(super) fn blend(&mut self, index: usize, over: [f32; 3], opacity: f32) {

@@ -5,7 +5,9 @@ use super::error::RenderError;
 use super::options::RenderOptions;
 use super::output::{Numbered, Output, plan_output};
 use super::renderer::Renderer;
+use super::replay::{MOST_FPS, Replay};
 use super::select::{Cadence, Selection};
+use super::view::View;
 use crate::snapshot::{Setting, Snapshot};
 
 /// Whether an output that exists may be replaced.
@@ -92,6 +94,7 @@ pub fn run<E: Into<Box<dyn std::error::Error + Send + Sync>>>(
         Output::Pictures(names) => pictures(frames, renderer, job, &names),
         Output::Gif(path) => film(frames, renderer, job, &path, Format::Gif),
         Output::Mp4(path) => film(frames, renderer, job, &path, Format::Mp4),
+        Output::Replay(path) => replay(frames, setting, job, &path),
     }
 }
 
@@ -133,6 +136,32 @@ fn pictures(
         done.frames += 1;
     }
     if done.frames == 0 { Err(RenderError::NoFrames) } else { Ok(done) }
+}
+
+/// Writes a page; the view is fitted to the first frame unless it is known.
+fn replay(
+    frames: impl Iterator<Item = Result<Snapshot, RenderError>>,
+    setting: &Setting,
+    job: &RenderJob,
+    path: &Path,
+) -> Result<Rendered, RenderError> {
+    check_free(path, job)?;
+    let cadence = Cadence::new(1.0, MOST_FPS, job.selection.every);
+    let (fps, mut frames) = cadence.apply(job.selection.many(frames))?;
+    let first = frames.next().ok_or(RenderError::NoFrames)??;
+    let mut options = job.options.clone();
+    let of_scene = setting.view.map(|(min, max)| View { min, max });
+    let view = options.view.or(of_scene).unwrap_or_else(|| View::fit(setting, [&first]));
+    options.view = Some(view);
+    let mut page = Replay::new(setting, &options, view);
+    for frame in std::iter::once(Ok(first)).chain(frames) {
+        let mut frame = frame?;
+        frame.sort_by_id();
+        page.push(&frame);
+    }
+    let done = Rendered { frames: page.frames(), path: path.to_owned(), size: [0; 2], fps: Some(fps) };
+    page.finish(path)?;
+    Ok(done)
 }
 
 /// Kinds of films.

@@ -1,15 +1,81 @@
-//! The time stamp and the colour bar.
+//! The time stamp, the colour bar, the scale bar and the legend.
 
+use super::color::Rgb;
 use super::image::Image;
 use super::scalar::Scalar;
 use super::text::{self, Align, Lettering};
 use super::theme::Theme;
 
-/// Writes the simulated time into the upper left corner.
+/// Opacity of the plates behind text.
+const PLATE: f32 = 0.8;
+
+/// Writes the simulated time onto a plate in the upper left corner.
 pub(super) fn time_stamp(image: &mut Image, time: f64, theme: &Theme, scale: f32) {
     let height = 11.0 * scale;
-    let lettering = Lettering { height, align: Align::Left, color: theme.text, halo: theme.background };
-    text::draw(image, &format!("{time:.2} s"), [16.0 * scale, 16.0 * scale + height], lettering);
+    let label = format!("{time:.2} s");
+    let [left, top, pad] = [16.0 * scale, 16.0 * scale, 7.0 * scale];
+    plate(image, [left - pad, top - pad, left + text::width(&label, height) + pad, top + height + pad], theme);
+    text::draw(image, &label, [left, top + height], lettering(height, Align::Left, theme));
+}
+
+/// Draws a bar of a round length into the lower right corner of the first `rows` rows; `metre` in pixels.
+pub(super) fn scale_bar(image: &mut Image, rows: u32, metre: f64, theme: &Theme, scale: f32) {
+    let [width, bottom] = [image.width() as f32, rows as f32];
+    let metres = round_length(0.22 * f64::from(width) / metre);
+    let [length, height, pad] = [(metres * metre) as f32, 10.0 * scale, 8.0 * scale];
+    let label = if metres < 0.01 {
+        format!("{} mm", number(1e3 * metres, 1e3 * metres))
+    } else if metres < 1.0 {
+        format!("{} cm", number(100.0 * metres, 100.0 * metres))
+    } else {
+        format!("{} m", number(metres, metres))
+    };
+    let wide = length.max(text::width(&label, height));
+    let [right, base] = [width - 20.0 * scale, bottom - 20.0 * scale];
+    plate(image, [right - wide - pad, base - height - 16.0 * scale, right + pad, base + pad], theme);
+    let middle = right - 0.5 * wide;
+    rectangle(image, [middle - 0.5 * length, base - 4.0 * scale, middle + 0.5 * length, base], theme.text, 1.0);
+    text::draw(image, &label, [middle, base - 10.0 * scale], lettering(height, Align::Center, theme));
+}
+
+/// Lists names with their colours on a plate in the upper right corner.
+pub(super) fn legend(image: &mut Image, entries: &[(Rgb, String)], theme: &Theme, scale: f32) {
+    let [height, line, pad] = [10.0 * scale, 19.0 * scale, 9.0 * scale];
+    let widest = entries.iter().map(|(_, name)| text::width(name, height)).fold(0.0, f32::max);
+    let right = image.width() as f32 - 12.0 * scale;
+    let [left, top] = [right - widest - 2.2 * height - pad, 14.0 * scale];
+    plate(image, [left - pad, top - pad, right, top + line * entries.len() as f32 - (line - height) + pad], theme);
+    for (row, (color, name)) in entries.iter().enumerate() {
+        let y = top + line * row as f32;
+        rectangle(image, [left, y, left + 1.3 * height, y + height], *color, 1.0);
+        text::draw(image, name, [left + 2.2 * height, y + height], lettering(height, Align::Left, theme));
+    }
+}
+
+fn lettering(height: f32, align: Align, theme: &Theme) -> Lettering {
+    Lettering { height, align, color: theme.text, halo: theme.background }
+}
+
+fn plate(image: &mut Image, area: [f32; 4], theme: &Theme) {
+    rectangle(image, area, theme.background, PLATE);
+}
+
+fn rectangle(image: &mut Image, [left, top, right, bottom]: [f32; 4], color: Rgb, opacity: f32) {
+    let span = |from: f32, to: f32, most: u32| {
+        from.round().max(0.0) as usize..(to.round().max(0.0) as usize).min(most as usize)
+    };
+    let width = image.width() as usize;
+    for y in span(top, bottom, image.height()) {
+        for x in span(left, right, image.width()) {
+            image.blend(y * width + x, super::color::to_float(color), opacity);
+        }
+    }
+}
+
+/// The largest of 1, 2 and 5 times a power of ten up to a length.
+pub(super) fn round_length(most: f64) -> f64 {
+    let decade = 10f64.powf(most.log10().floor());
+    [5.0, 2.0, 1.0].into_iter().map(|step| step * decade).find(|length| *length <= most).unwrap_or(decade)
 }
 
 /// Height of the strip that holds the colour bar, an even number of pixels.
@@ -49,7 +115,7 @@ pub(super) fn color_bar(image: &mut Image, scalar: &Scalar, top: u32, theme: &Th
 }
 
 /// A number with the digits that quarters of the span need.
-fn number(value: f64, span: f64) -> String {
+pub(super) fn number(value: f64, span: f64) -> String {
     if !(1e-3..1e5).contains(&span) {
         return format!("{value:.1e}");
     }
@@ -61,7 +127,12 @@ fn number(value: f64, span: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::number;
+    use super::{number, round_length};
+
+    #[test]
+    fn scale_bars_have_round_lengths() {
+        assert_eq!([0.7, 4.9, 5.0, 0.021].map(round_length), [0.5, 2.0, 5.0, 0.02]);
+    }
 
     #[test]
     fn numbers_have_the_digits_they_need() {

@@ -46,6 +46,17 @@ pub enum TimeStamp {
     Hidden,
 }
 
+/// What a figure in print needs besides the scene.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Annotations {
+    /// Axes with numbers in metres, at the left and below.
+    pub axes: bool,
+    /// A bar of a round length.
+    pub scale_bar: bool,
+    /// Names of materials and bodies beside their colours.
+    pub legend: bool,
+}
+
 /// How pictures look.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderOptions {
@@ -63,6 +74,8 @@ pub struct RenderOptions {
     pub view: Option<View>,
     /// Whether to show the time.
     pub time_stamp: TimeStamp,
+    /// Axes, scale bar, legend.
+    pub annotations: Annotations,
 }
 
 impl Default for RenderOptions {
@@ -75,6 +88,7 @@ impl Default for RenderOptions {
             range: Range::default(),
             view: None,
             time_stamp: TimeStamp::default(),
+            annotations: Annotations::default(),
         }
     }
 }

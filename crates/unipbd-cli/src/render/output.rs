@@ -13,6 +13,8 @@ pub enum Output {
     Gif(PathBuf),
     /// A film, made by `ffmpeg`.
     Mp4(PathBuf),
+    /// A page that plays the run in a browser.
+    Replay(PathBuf),
 }
 
 /// Names of numbered pictures.
@@ -40,7 +42,7 @@ impl Numbered {
 }
 
 /// Tells from a path what to write: `NAME.png` one picture, `NAME_%04d.png` or a directory (one
-/// that exists, or a name with a slash at its end) a picture per frame, `NAME.gif`, `NAME.mp4`.
+/// that exists, or a name with a slash at its end) a picture per frame, `NAME.gif`, `NAME.mp4`, `NAME.html`.
 pub fn plan_output(path: &Path) -> Result<Output, RenderError> {
     let unknown = || RenderError::Format(path.to_owned());
     let text = path.to_str().ok_or_else(unknown)?;
@@ -54,6 +56,7 @@ pub fn plan_output(path: &Path) -> Result<Output, RenderError> {
         "png" => Ok(Output::Picture(path.to_owned())),
         "gif" => Ok(Output::Gif(path.to_owned())),
         "mp4" => Ok(Output::Mp4(path.to_owned())),
+        "html" => Ok(Output::Replay(path.to_owned())),
         _ => Err(unknown()),
     }
 }

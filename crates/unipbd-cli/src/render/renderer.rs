@@ -1,5 +1,6 @@
 use unipbd_core::phase::Phase;
 
+use super::axes::Framed;
 use super::color::Rgb;
 use super::error::RenderError;
 use super::field::Field;
@@ -13,11 +14,16 @@ use super::walls::Wall;
 use super::{bodies, labels};
 use crate::snapshot::{Setting, Snapshot};
 
+/// Most lines of a legend.
+const MOST_ENTRIES: usize = 12;
+
 /// What is settled once the view is known.
 struct Canvas {
     camera: Camera,
     walls: Vec<Wall>,
     image: Image,
+    /// The image within its axes.
+    framed: Option<Framed>,
 }
 
 /// Draws frames of one run, keeping its buffers from frame to frame.
@@ -67,7 +73,19 @@ impl Renderer {
         if self.options.time_stamp == TimeStamp::Shown {
             labels::time_stamp(&mut canvas.image, frame.time, &self.theme, scale);
         }
-        Ok(&self.canvas.insert(canvas).image)
+        let annotations = self.options.annotations;
+        let [rows, metre] = [canvas.camera.size[1] as f64, canvas.camera.scale];
+        if annotations.scale_bar {
+            labels::scale_bar(&mut canvas.image, rows as u32, metre, &self.theme, scale);
+        }
+        if annotations.legend {
+            labels::legend(&mut canvas.image, &self.legend(frame), &self.theme, scale);
+        }
+        let canvas = self.canvas.insert(canvas);
+        Ok(match &mut canvas.framed {
+            Some(framed) => framed.show(&canvas.image),
+            None => &canvas.image,
+        })
     }
 
     /// Size of lines and letters relative to a picture 960 pixels wide.
@@ -82,11 +100,33 @@ impl Renderer {
         let strip = if self.scalar.is_some() { labels::strip_height(self.scale()) } else { 0 };
         let image = Image::new(camera.size[0], camera.size[1].saturating_add(strip), self.theme.background)?;
         let walls = self.setting.walls.iter().filter_map(|outline| Wall::new(outline, &camera)).collect();
-        Ok(Canvas { camera, walls, image })
+        let framed = match self.options.annotations.axes {
+            true => Some(Framed::new(&camera, &image, &self.theme, self.scale())?),
+            false => None,
+        };
+        Ok(Canvas { camera, walls, image, framed })
+    }
+
+    /// Materials that colours tell apart, and bodies by their names; those with the same name and number once.
+    fn legend(&self, frame: &Snapshot) -> Vec<(Rgb, String)> {
+        let mut entries: Vec<(Rgb, String)> = Vec::new();
+        if self.scalar.is_none() {
+            let there = |index: usize| frame.materials.iter().any(|material| usize::from(*material) == index);
+            let named = self.setting.materials.iter().zip(&self.colors).enumerate();
+            let shown = named.filter(|(index, (material, _))| material.phase != Phase::Rigid && there(*index));
+            entries.extend(shown.map(|(_, (material, color))| (*color, material.name.clone())));
+        }
+        for (index, body) in frame.bodies.iter().enumerate().filter(|(_, body)| !body.removed) {
+            let name = body.name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end().to_owned();
+            if !name.is_empty() && !entries.iter().any(|(_, other)| *other == name) && entries.len() < MOST_ENTRIES {
+                entries.push((bodies::color(body, index, &self.theme), name));
+            }
+        }
+        entries
     }
 
     fn draw_particles(&mut self, canvas: &mut Canvas, frame: &Snapshot) {
-        let Canvas { camera, walls, image } = canvas;
+        let Canvas { camera, walls, image, .. } = canvas;
         let spacing = camera.length(self.setting.spacing);
         let (colors, liquids) = (&self.colors[..], &self.liquids[..]);
         let scope = Scope { frame, camera, theme: &self.theme, colors, liquids, walls, spacing };
@@ -113,7 +153,7 @@ impl Renderer {
     }
 
     fn draw_solids(&self, canvas: &mut Canvas, frame: &Snapshot) {
-        let Canvas { camera, walls, image } = canvas;
+        let Canvas { camera, walls, image, .. } = canvas;
         let [scale, spacing] = [self.scale(), camera.length(self.setting.spacing)];
         for (index, body) in frame.bodies.iter().enumerate() {
             bodies::draw(image, body, bodies::color(body, index, &self.theme), camera, spacing, scale);

@@ -101,8 +101,9 @@ fn suited_range(by: ColorBy, mut values: Vec<f32>) -> Option<[f64; 2]> {
     let low = percentile(&mut values, 0.005);
     let high = percentile(&mut values, 0.995);
     Some(match by {
+        // Compression sets the ends: spray, which has few neighbours, would set them tenfold.
         ColorBy::Density => {
-            let end = round_up(low.abs().max(high.abs()).max(0.1));
+            let end = round_up(high.max(0.1));
             [-end, end]
         }
         ColorBy::Temperature => [-round_up(-low.min(0.0)), round_up(high.max(1e-3))],
@@ -142,8 +143,9 @@ mod tests {
     }
 
     #[test]
-    fn automatic_density_range_is_symmetric_about_zero() {
+    fn automatic_density_range_is_symmetric_about_zero_and_follows_compression() {
         assert_eq!(suited_range(ColorBy::Density, vec![-0.4, 0.1, 3.7]), Some([-4.0, 4.0]));
+        assert_eq!(suited_range(ColorBy::Density, vec![-80.0, -60.0, 0.1, 0.7]), Some([-0.8, 0.8]));
         assert_eq!(suited_range(ColorBy::Density, vec![]), None);
     }
 }

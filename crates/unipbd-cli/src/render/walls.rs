@@ -150,6 +150,15 @@ pub(super) fn stroke(image: &mut Image, path: Option<Path>, color: Rgb, width: f
     image.canvas().stroke_path(&path, &solid(color), &stroke, Transform::identity(), None);
 }
 
+/// A line through pixels.
+pub(super) fn stroke_pixels(image: &mut Image, points: &[[f32; 2]], color: Rgb, width: f32) {
+    let mut path = PathBuilder::new();
+    for (k, [x, y]) in points.iter().enumerate() {
+        if k == 0 { path.move_to(*x, *y) } else { path.line_to(*x, *y) }
+    }
+    stroke(image, path.finish(), color, width);
+}
+
 fn solid(color: Rgb) -> Paint<'static> {
     let mut paint = Paint { anti_alias: true, ..Paint::default() };
     paint.set_color_rgba8(color[0], color[1], color[2], 255);

@@ -158,7 +158,7 @@ impl Summary {
                 let _ = writeln!(text, "  log            {path} ({})", bytes(log.bytes));
                 let _ = write!(
                     text,
-                    "  open it        rerun {path}, or in Lichtblick; unipbd render {path} -o {}",
+                    "  open it        rerun {path}; Lichtblick with unipbd layout {path}; unipbd render {path} -o {}",
                     self.picture(log)
                 );
             }

@@ -25,8 +25,47 @@ fn a_scene_is_run_for_its_pictures_without_a_log() {
 fn a_log_without_the_column_says_which_flag_records_it() {
     let place = Place::new();
     place.run(&["drop.toml", "-q"]).exits(0);
-    let ended = place.run(&["render", "drop.mcap", "-o", "a.png", "--color", "speed"]).exits(2);
-    assert!(ended.stderr().contains("--fields velocity"), "{}", ended.stderr());
+    let ended = place.run(&["render", "drop.mcap", "-o", "a.png", "--color", "density"]).exits(2);
+    assert!(ended.stderr().contains("--fields density"), "{}", ended.stderr());
+}
+
+#[test]
+fn speeds_come_from_positions_where_a_log_has_no_velocities() {
+    let place = Place::new();
+    place.run(&["drop.toml", "-q"]).exits(0);
+    let drawn = |name: &str, color: &str| {
+        place.run(&["render", "drop.mcap", "-o", name, "--time", "0.2", "--color", color, "--range", "0..3"]).exits(0);
+        std::fs::read(place.path(name)).unwrap()
+    };
+    assert!(drawn("speed.png", "speed") != drawn("material.png", "material"));
+}
+
+#[test]
+fn axes_scale_bar_and_legend_change_a_picture_outside_the_scene() {
+    let place = Place::new();
+    place.run(&["drop.toml", "-q"]).exits(0);
+    let size = |name: &str, flags: &[&str]| {
+        place.run(&[&["render", "drop.mcap", "-o", name, "--json"], flags].concat()).exits(0).object()["size"].clone()
+    };
+    let plain = size("plain.png", &[]);
+    let axes = size("axes.png", &["--axes"]);
+    assert!(axes[0].as_u64() > plain[0].as_u64() && axes[1].as_u64() > plain[1].as_u64());
+    for flag in ["--scale-bar", "--legend"] {
+        let name = format!("{}.png", &flag[2..]);
+        assert_eq!(size(&name, &[flag]), plain);
+        assert!(std::fs::read(place.path(&name)).unwrap() != std::fs::read(place.path("plain.png")).unwrap(), "{flag}");
+    }
+}
+
+#[test]
+fn a_page_plays_a_scene_or_a_log() {
+    let place = Place::new();
+    place.run(&["render", "drop.toml", "-o", "scene.html", "-q"]).exits(0);
+    place.run(&["drop.toml", "-q"]).exits(0);
+    place.run(&["render", "drop.mcap", "-o", "log.html", "-q"]).exits(0);
+    let [scene, log] = ["scene.html", "log.html"].map(|name| std::fs::read_to_string(place.path(name)).unwrap());
+    assert!(scene.contains("\"name\":\"Drop\"") && !scene.contains("http"), "one file, no server");
+    assert_eq!(scene.len(), log.len());
 }
 
 #[test]

@@ -108,6 +108,12 @@ impl Ended {
         self.stdout().lines().map(|line| serde_json::from_str(line).unwrap_or_else(|e| panic!("{e}: {line}"))).collect()
     }
 
+    /// The last object.
+    #[track_caller]
+    pub fn object(&self) -> Value {
+        self.objects().pop().expect("there is an object")
+    }
+
     /// The last object, which has to be the summary.
     #[track_caller]
     pub fn summary(&self) -> Value {

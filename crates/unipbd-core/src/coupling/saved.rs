@@ -22,7 +22,7 @@ impl RigidBodies {
 
     /// The bodies that a state holds, where they started.
     fn with_bodies_of(&self, saved: &RigidBodies, spacing: f64) -> Option<RigidBodies> {
-        let bodies = self.bodies.from_saved_specs(&saved.bodies)?;
+        let bodies = self.bodies.with_saved_specs(&saved.bodies)?;
         if saved.sample_ids.len() != bodies.len() {
             return None;
         }

@@ -69,7 +69,7 @@ impl BodyChange {
 
 impl Bodies {
     /// The same bodies as these specifications describe, where they start; `None` if one makes no sense.
-    pub(crate) fn from_saved_specs(&self, saved: &Bodies) -> Option<Bodies> {
+    pub(crate) fn with_saved_specs(&self, saved: &Bodies) -> Option<Bodies> {
         let mut bodies = Bodies::new(self.spacing);
         let removed = saved.views.iter().map(|view| view.removed);
         if saved.views.len() != saved.specs.len() {

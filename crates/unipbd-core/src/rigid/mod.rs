@@ -15,6 +15,7 @@ mod wall;
 pub use crate::scene::BodyKind;
 pub use body_set::Bodies;
 pub use change::BodyChange;
+pub use contact::{ContactEvent, ContactPair, ContactPoint, JointState};
 pub use derived::InverseMass;
 pub(crate) use describe::{joint, specification, strength};
 pub(crate) use mobility::{HeldRow, Mobilities};

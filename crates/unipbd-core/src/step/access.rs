@@ -146,7 +146,7 @@ impl Solver {
     }
 
     /// Joints by index, with their loads; those that are broken or taken away keep their place.
-    pub fn joints(&self) -> Vec<crate::rigid::contact::JointState> {
+    pub fn joints(&self) -> Vec<crate::rigid::JointState> {
         self.world.parts.rigid.as_ref().map_or_else(Vec::new, |rigid| rigid.contacts.joints().collect())
     }
 

@@ -3,7 +3,7 @@
 use super::world::World;
 use crate::observe::{Event, Severity};
 use crate::rigid::Body;
-use crate::rigid::contact::JointState;
+use crate::rigid::JointState;
 
 impl World {
     /// At the end of a frame: tells which joints broke in it.

@@ -2,8 +2,8 @@
 
 use super::Solver;
 use crate::math::{Vector64, wide};
-use crate::rigid::contact::{ContactEvent, ContactPair, ContactPoint};
-use crate::rigid::{Body, Outline, Pose, box_outline};
+use crate::phase::Phase;
+use crate::rigid::{Body, ContactEvent, ContactPair, ContactPoint, Outline, Pose, box_outline};
 
 /// A body or a wall.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,7 +98,7 @@ impl Solver {
     pub fn particles_in(&self, low: Vector64, high: Vector64) -> Vec<u32> {
         let inside = |row: &usize| {
             let place = wide(self.positions()[*row]);
-            place.cmpge(low).all() && place.cmple(high).all() && self.phases()[*row] != crate::Phase::Rigid
+            place.cmpge(low).all() && place.cmple(high).all() && self.phases()[*row] != Phase::Rigid
         };
         let mut ids: Vec<u32> = (0..self.ids().len()).filter(inside).map(|row| self.ids()[row]).collect();
         ids.sort_unstable();

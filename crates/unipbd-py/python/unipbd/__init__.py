@@ -35,6 +35,7 @@ from ._errors import (
     UnipbdError,
 )
 from ._frame import Frame
+from ._gradient import Gradient, gradient
 from ._log import Log, LogFrame, read_log
 from ._material import Material
 from ._native import __version__
@@ -64,6 +65,7 @@ __all__ = [
     "Edit",
     "EditError",
     "Frame",
+    "Gradient",
     "Joint",
     "Log",
     "LogFrame",
@@ -87,5 +89,6 @@ __all__ = [
     "Tables",
     "UnipbdError",
     "__version__",
+    "gradient",
     "read_log",
 ]

@@ -56,16 +56,18 @@ class Batch(Sequence[Simulation]):
         self._worlds = [Simulation(one, seed=int(seed), threads=1) for one, seed in worlds]
         self._pool = _native.Pool(thread_count(threads))
 
-    def step(self, frames: int = 1) -> None:
-        """Advances all worlds by this many frames.
+    def step(self, frames: int = 1, worlds: Sequence[int] | None = None) -> None:
+        """Advances all worlds by this many frames, or those whose indices are `worlds`.
 
         Raises the first `SolverError`, with the index of its world in `SolverError.world`; the other
         worlds have been stepped all the same. Worlds with hooks or recordings are stepped one by one.
         """
         if frames < 0:
             raise ValueError(f"frames must not be negative: {frames}")
-        errors = [self._step_together(frames)]
-        for number, world in enumerate(self._worlds):
+        wanted = range(len(self)) if worlds is None else sorted({range(len(self))[number] for number in worlds})
+        errors = [self._step_together(frames, wanted)]
+        for number in wanted:
+            world = self._worlds[number]
             if _needs_python(world):
                 try:
                     world.step(frames)
@@ -76,9 +78,9 @@ class Batch(Sequence[Simulation]):
         if diverged:
             raise min(diverged, key=lambda error: error.world or 0)
 
-    def _step_together(self, frames: int) -> SolverError | None:
-        """Steps all worlds that need nothing from Python; returns the error of the first that diverged."""
-        numbers = [number for number, world in enumerate(self._worlds) if not _needs_python(world)]
+    def _step_together(self, frames: int, wanted: Sequence[int]) -> SolverError | None:
+        """Steps all of these worlds that need nothing from Python; returns the error of the first that diverged."""
+        numbers = [number for number in wanted if not _needs_python(self._worlds[number])]
         try:
             self._pool.step([self._worlds[number]._native for number in numbers], frames)
         except SolverError as error:

@@ -9,10 +9,11 @@ import numpy as np
 import numpy.typing as npt
 
 from . import _native
-from ._arrays import Doubles, Floats, Ids
+from ._arrays import Doubles, Floats, Ids, fixed
 from ._material import Material
 from ._scene import Scene
 from ._threads import thread_count
+from ._walls import wall_particles
 from ._world import World
 
 
@@ -153,6 +154,11 @@ class Observable(World):
     def walls(self) -> list[Doubles]:
         """Walls as lines to draw: corners [m], float64, shape (M, 2) each; a closed one ends where it begins."""
         return self._native.walls()
+
+    def wall_particles(self, layers: int = 1) -> Floats:
+        """Walls as particles, one spacing apart, the first layer half a spacing behind the surface [m], float32, shape
+        (W, 2): what learned simulators want beside `positions`. See `unipbd.datasets.wall_particles`."""
+        return fixed(wall_particles(self._scene, layers).positions.astype(np.float32))
 
     # -- numbers -------------------------------------------------------------------------------
 

@@ -117,7 +117,7 @@ fn text(log: &Log, content: &Content, size: u64) -> String {
         lines.push(format!("  changes     {}", one_line(&header.overrides.join(", "))));
     }
     lines.push(format!("  written by  unipbd {}, scene sha256 {}", one_line(log.version()), header.scene_sha256()));
-    lines.push("  topics".into());
+    lines.push("  topics      sizes before compression".into());
     for (name, traffic) in &content.topics {
         let messages = plural(traffic.messages, "message");
         let name = one_line(name);
