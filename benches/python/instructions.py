@@ -34,7 +34,7 @@ GROWTH_LIMIT = 1.05
 PARTS = {
     "bodies and contacts": r"rigid|coupling|shapes|constraints::shape_matching",
     "gas and smoke": r"effects::(smoke|drag|wind|confinement|baroclinic|conduction|heating)|sources",
-    "other groups and effects": r"legacy|constraints::(adhesion|distance|rope)|effects::(cohesion|shear)",
+    "other groups and effects": r"legacy|constraints::(surface_tension|viscosity|distance|rope)",
     "sleep": r"sleep|step::sleep",
     "diagnostics": r"observe|step::diagnose|expect",
     "row index, edits, states": r"rows|edit|state|bytes",

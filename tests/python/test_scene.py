@@ -39,8 +39,8 @@ def test_the_description_is_read_and_edited_by_attribute() -> None:
 
 
 def test_a_misspelt_key_is_noticed_where_it_is_written(scene: up.Scene) -> None:
-    with pytest.raises(AttributeError, match="did you mean 'cohesion'"):
-        scene.materials["water"].cohesoin = 0.1
+    with pytest.raises(AttributeError, match="did you mean 'surface_tension'"):
+        scene.materials["water"].surfac_tension = 0.1
     with pytest.raises(AttributeError, match="did you mean 'spacing'"):
         scene.spacng = 0.1
     with pytest.raises(AttributeError):

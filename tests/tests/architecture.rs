@@ -28,7 +28,7 @@ const LAYERS: [&[&str]; 17] = [
 ];
 
 /// Kinds of constraint: a file or folder each, and none names another.
-const CONSTRAINTS: [&str; 5] = ["adhesion", "batch", "density", "distance", "shape_matching"];
+const CONSTRAINTS: [&str; 6] = ["batch", "density", "distance", "shape_matching", "surface_tension", "viscosity"];
 
 fn core() -> PathBuf {
     repository().join("crates/unipbd-core/src")

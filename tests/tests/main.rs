@@ -16,5 +16,7 @@ mod scale;
 mod shape_matching;
 mod smoke;
 mod stages;
+mod surface_tension;
 mod tunnelling;
+mod viscosity;
 mod walls;

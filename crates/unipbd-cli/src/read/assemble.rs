@@ -172,6 +172,7 @@ fn body(shape: &BodyShape, state: BodyState) -> Result<Body, String> {
             rolling_friction: shape.rolling_friction,
             restitution: shape.restitution,
             speed: 0.0,
+            no_slip: false,
         },
         filter: CollisionFilter { layers: shape.layers, collides_with: shape.collides_with, group: 0 },
         sensor: shape.sensor,

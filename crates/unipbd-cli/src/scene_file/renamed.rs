@@ -16,6 +16,16 @@ const TWO_VISCOSITIES: &str =
 const FOR_COMPARISON: &str = "the table holds what is there for comparison alone";
 
 const RENAMED: &[Renamed] = &[
+    Renamed {
+        old: "liquid.cohesion",
+        new: &["liquid.surface_tension"],
+        reason: "it is a force in N, 0.0728 for water",
+    },
+    Renamed {
+        old: "liquid.adhesion",
+        new: &["liquid.contact_angle"],
+        reason: "the angle at walls in degrees, beside a surface tension",
+    },
     Renamed { old: "liquid.viscosity", new: &["liquid.xsph", "liquid.kinematic_viscosity"], reason: TWO_VISCOSITIES },
     Renamed {
         old: "solver.preset",

@@ -6,11 +6,10 @@ mod density;
 mod ropes;
 mod waves;
 
-use crate::constraints::{Adhesion, ConstraintGroup, ShapeMatching};
+use crate::constraints::{ConstraintGroup, ShapeMatching, SurfaceTension, Viscosity};
 use crate::coupling::{Met, RigidBodies, is_outlined};
 use crate::effects::{
-    Baroclinic, Cohesion, Conduction, Drag, DragLaw, Effect, Heating, ShearViscosity, SmokeAdvection,
-    VorticityConfinement, Xsph,
+    Baroclinic, Conduction, Drag, DragLaw, Effect, Heating, SmokeAdvection, VorticityConfinement, Xsph,
 };
 use crate::math::{Vector, Vector64, real, vector};
 use crate::neighbors::{ListCost, Neighbors, SearchPositions};
@@ -22,7 +21,7 @@ use crate::phase::{MaterialIndex, Phase};
 use crate::pressure_grid::{Accuracy, Mixture, PressureGrid};
 use crate::rigid::Bodies;
 use crate::rng::Rng;
-use crate::scene::{BodySolver, CheckedScene, GradientPoint, MaterialRef, Points, Problems, Scene, disc_points};
+use crate::scene::{BodySolver, CheckedScene, GradientPoint, MaterialRef, Points, Problems, Scene, Slip, disc_points};
 use crate::sleep::LiquidSleep;
 use crate::sources::{EmitterSystem, RemovalRules};
 use crate::step::{BodyForce, Parts, Solver, SubstepRule};
@@ -155,8 +154,11 @@ fn groups(
 ) -> Vec<Box<dyn ConstraintGroup>> {
     let mut groups: Vec<Box<dyn ConstraintGroup>> = Vec::new();
     // A force is applied before the constraints that act against it.
-    if let Some(adhesion) = Adhesion::new(scene) {
-        groups.push(Box::new(adhesion));
+    if let Some(tension) = SurfaceTension::new(scene) {
+        groups.push(Box::new(tension));
+    }
+    if let Some(viscosity) = Viscosity::new(scene) {
+        groups.push(Box::new(viscosity));
     }
     if scene.materials().any(|material| material.phase().is_fluid()) {
         groups.push(density);
@@ -173,10 +175,8 @@ fn effects(scene: &Scene, seed: u64) -> Vec<Box<dyn Effect>> {
     let wind = Rng::new(seed, WIND_STREAM).state();
     let effects = [
         boxed(Xsph::new(scene)),
-        boxed(ShearViscosity::new(scene)),
         boxed(Drag::new(scene, DragLaw::Thin, wind)),
         boxed(Drag::new(scene, DragLaw::Quadratic, wind)),
-        boxed(Cohesion::new(scene)),
         boxed(Baroclinic::new(scene)),
         boxed(Conduction::new(scene)),
         boxed(Heating::new(scene)),
@@ -243,11 +243,12 @@ fn rigid_bodies(scene: &Scene, particles: &mut Particles) -> Option<RigidBodies>
 }
 
 /// Whether bodies that no fluid moves are walls to it by their outlines. What looks for samples of bodies still finds
-/// them: adhesion, bodies of particles, sleep, the options of papers.
+/// them: surface tension, fluids that stick to bodies, bodies of particles, sleep, the options of papers.
 fn lets_outlines(scene: &Scene) -> bool {
-    let adheres = scene.liquid.iter().any(|liquid| liquid.adhesion != 0.0);
+    let tense = scene.liquid.iter().any(|liquid| liquid.surface_tension != 0.0);
+    let sticks = scene.body.iter().any(|body| body.slip == Slip::None);
     let matched = scene.body.iter().any(|body| body.solver == BodySolver::ShapeMatching);
-    !(adheres || matched || scene.solver.sleep || scene.legacy.changes_density())
+    !(tense || sticks || matched || scene.solver.sleep || scene.legacy.changes_density())
 }
 
 /// The initial particles of a scene.

@@ -5,23 +5,25 @@
 //! [`ConstraintGroup`] anywhere and hand it to [`Solver::add_group`](crate::Solver::add_group), or
 //! implement [`Constraint`] and let [`Batch`] do the rest.
 
-mod adhesion;
 mod batch;
 mod corrections;
 mod density;
 mod distance;
 mod projection;
 mod shape_matching;
+mod surface_tension;
+mod viscosity;
 
 use std::ops::BitOr;
 
-pub use adhesion::Adhesion;
 pub use batch::{Batch, Constraint};
 pub(crate) use corrections::CorrectionParts;
 pub use corrections::{Corrections, OutlineLoad};
 pub use density::{Density, DensityMaterial, DensitySettings};
 pub use distance::{Distance, Tether};
 pub use shape_matching::{Member, ShapeMatching};
+pub use surface_tension::SurfaceTension;
+pub use viscosity::Viscosity;
 
 use crate::math::{Real, Vector};
 use crate::neighbors::Neighbors;
@@ -69,12 +71,16 @@ pub struct Substep<'a> {
     pub pressure_limit: Real,
     /// Part of their stiffness that fluids have, 0 to 1.
     pub stiffness: Real,
+    /// Whether the start of a run is being brought to its rest density: no force but that of the density acts.
+    pub settling: bool,
     /// The particles, at their predicted or projected positions.
     pub particles: &'a Particles,
     /// Rows by id; kept only where a group [needs](Needs::ROWS) it.
     pub rows: &'a RowIndex,
     /// Neighbours of the dense rows; built only where a group [needs](Needs::NEIGHBORS) it.
     pub neighbors: &'a Neighbors,
+    /// Ids of the samples of bodies that viscous fluids do not slip along: from the first to one past the last.
+    pub without_slip: &'a [(u32, u32)],
     /// Static walls.
     pub walls: &'a Walls,
     /// Outlines of bodies that are walls too.
@@ -120,6 +126,11 @@ pub trait ConstraintGroup: Send + Sync {
     /// Largest violation after the last projection, in the group's own unit.
     fn violation(&self) -> Option<f64> {
         None
+    }
+
+    /// Adds the pressures over density that its forces bring about in fluid particles [m^2/s^2].
+    fn add_pressures(&self, now: Substep<'_>, pressures: &mut [Real]) {
+        let _ = (now, pressures);
     }
 
     /// This group as the one that holds the density, if it does.

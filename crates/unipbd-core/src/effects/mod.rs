@@ -2,23 +2,19 @@
 //! advection of smoke. None of them moves a constrained particle.
 
 mod baroclinic;
-mod cohesion;
 mod conduction;
 mod confinement;
 mod drag;
 mod heating;
-mod shear_viscosity;
 mod smoke;
 mod wind;
 mod xsph;
 
 pub use baroclinic::Baroclinic;
-pub use cohesion::Cohesion;
 pub use conduction::Conduction;
 pub use confinement::VorticityConfinement;
 pub use drag::{Drag, DragLaw};
 pub use heating::Heating;
-pub use shear_viscosity::ShearViscosity;
 pub use smoke::{Advected, SmokeAdvection};
 pub use wind::Wind;
 pub use xsph::Xsph;

@@ -166,6 +166,8 @@ pub enum SubstepReason {
     TrustRegion,
     /// The pressure and the target of the scene for the largest compression.
     Compression,
+    /// The shortest waves of surface tension.
+    Capillary,
     /// The speed and spin of rigid bodies.
     Bodies,
     /// The height of stacked bodies, and the mass ratio of bodies that act on each other.
@@ -176,11 +178,12 @@ pub enum SubstepReason {
 
 impl SubstepReason {
     /// All reasons.
-    pub const ALL: [SubstepReason; 7] = [
+    pub const ALL: [SubstepReason; 8] = [
         SubstepReason::Fixed,
         SubstepReason::Speed,
         SubstepReason::TrustRegion,
         SubstepReason::Compression,
+        SubstepReason::Capillary,
         SubstepReason::Bodies,
         SubstepReason::Support,
         SubstepReason::Hysteresis,
@@ -193,6 +196,7 @@ impl SubstepReason {
             SubstepReason::Speed => "speed",
             SubstepReason::TrustRegion => "trust_region",
             SubstepReason::Compression => "compression",
+            SubstepReason::Capillary => "capillary",
             SubstepReason::Bodies => "bodies",
             SubstepReason::Support => "support",
             SubstepReason::Hysteresis => "hysteresis",

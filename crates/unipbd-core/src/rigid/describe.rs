@@ -7,7 +7,7 @@ use super::{
 };
 use crate::math::Vector64;
 use crate::scene::{
-    BodyDescription, BodySolver, JointDescription, JointRule, MotionDescription, RotationRule, Station,
+    BodyDescription, BodySolver, JointDescription, JointRule, MotionDescription, RotationRule, Slip, Station,
 };
 use crate::shapes::Shape;
 
@@ -34,6 +34,7 @@ pub(crate) fn specification(description: &BodyDescription, name: String, positio
             rolling_friction: description.rolling_friction,
             restitution: description.restitution,
             speed: description.surface_speed,
+            no_slip: description.slip == Slip::None,
         },
         filter: CollisionFilter {
             layers: layers(&description.layers),

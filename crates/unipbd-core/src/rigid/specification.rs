@@ -18,6 +18,8 @@ pub struct Surface {
     pub restitution: f64,
     /// Speed of the surface along the outline, counter-clockwise around the solid: a conveyor belt [m/s].
     pub speed: f64,
+    /// Whether viscous fluids move with it.
+    pub no_slip: bool,
 }
 
 impl Default for Surface {
@@ -35,6 +37,7 @@ impl Surface {
             rolling_friction: 0.0,
             restitution: 0.0,
             speed: 0.0,
+            no_slip: false,
         }
     }
 
@@ -60,6 +63,7 @@ impl Surface {
             rolling_friction: self.rolling_friction.max(other.rolling_friction),
             restitution: self.restitution.max(other.restitution),
             speed: self.speed + other.speed,
+            no_slip: self.no_slip || other.no_slip,
         }
     }
 }

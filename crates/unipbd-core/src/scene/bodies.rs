@@ -1,3 +1,4 @@
+use super::Slip;
 use serde::{Deserialize, Serialize};
 
 /// Coulomb friction coefficient of bodies and walls by default.
@@ -79,6 +80,9 @@ pub struct BodyDescription {
     /// Speed of the surface along the outline, counter-clockwise: a conveyor belt, for other bodies [m/s].
     #[serde(default)]
     pub surface_speed: f64,
+    /// Whether a fluid with a kinematic viscosity slips along it; along a soft body it does.
+    #[serde(default)]
+    pub slip: Slip,
     /// Collision layers the body is in, 0 to 31.
     #[serde(default = "first_layer")]
     pub layers: Vec<u8>,

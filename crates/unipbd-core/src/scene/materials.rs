@@ -17,16 +17,17 @@ pub struct Liquid {
     /// XSPH smoothing (Schechter & Bridson 2012), 0 to 1: the fraction of velocity differences that each substep
     /// smooths. The viscosity that comes of it grows with the number of substeps.
     pub xsph: f64,
-    /// Kinematic viscosity nu, whatever the number of substeps [m^2/s]. Where a substep is too long for it, it is cut
-    /// to the largest stable one, with a warning.
+    /// Kinematic viscosity nu, of any strength, whatever the number of substeps [m^2/s].
     pub kinematic_viscosity: f64,
     /// Whether it has a free surface, or fills its domain and resists dilation too.
     pub surface: LiquidSurface,
-    /// Strength of surface tension, the pull of a particle on its neighbour [m/s^2].
-    pub cohesion: f64,
-    /// Strength of the pull of walls and bodies: the acceleration of a particle on a flat wall; it ends a
-    /// kernel radius away [m/s^2].
-    pub adhesion: f64,
+    /// Surface tension sigma: the force along a line of the surface, in two dimensions a point [N]. It is that of
+    /// three dimensions [N/m] times the depth of the scene: 0.0728 for water in a sheet one metre thick. Between two
+    /// liquids it is the sum of both.
+    pub surface_tension: f64,
+    /// Angle between its surface and walls or bodies, measured within it: 0 spreads, 180 pearls off; without surface
+    /// tension it has no effect [deg].
+    pub contact_angle: f64,
     /// Drag against the air that grows with the square of the speed [1/m].
     pub quadratic_drag: f64,
     /// Factor on gravity.
@@ -45,8 +46,8 @@ impl Default for Liquid {
             xsph: 0.0,
             kinematic_viscosity: 0.0,
             surface: LiquidSurface::Free,
-            cohesion: 0.0,
-            adhesion: 0.0,
+            surface_tension: 0.0,
+            contact_angle: 90.0,
             quadratic_drag: 0.0,
             gravity_factor: 1.0,
             color: None,

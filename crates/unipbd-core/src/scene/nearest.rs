@@ -6,8 +6,8 @@
 ///
 /// ```
 /// use unipbd_core::scene::nearest;
-/// assert_eq!(nearest("densty", ["density", "cohesion"]), Some("density"));
-/// assert_eq!(nearest("mass", ["density", "cohesion"]), None);
+/// assert_eq!(nearest("densty", ["density", "surface_tension"]), Some("density"));
+/// assert_eq!(nearest("mass", ["density", "surface_tension"]), None);
 /// ```
 pub fn nearest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let candidates: Vec<&str> = candidates.into_iter().collect();

@@ -64,8 +64,8 @@ impl Scene {
         if !self.joint.is_empty() {
             return PressureGridChoice::off("bodies on joints turn too slowly with it");
         }
-        if self.liquid.iter().any(|liquid| liquid.cohesion != 0.0 || liquid.adhesion != 0.0) {
-            return PressureGridChoice::off("cohesion and adhesion pump energy with it");
+        if self.liquid.iter().any(|liquid| liquid.surface_tension != 0.0) {
+            return PressureGridChoice::off("its cells are too wide for surface tension");
         }
         let closed = self.tank.iter().any(|tank| tank.open.is_empty());
         if !closed && self.materials().any(|material| material.is_two_sided()) {

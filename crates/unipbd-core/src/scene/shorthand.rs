@@ -83,6 +83,7 @@ impl BodyDescription {
             rolling_friction: 0.0,
             restitution: 0.0,
             surface_speed: 0.0,
+            slip: Slip::Free,
             layers: vec![0],
             collides_with: None,
             rotation: RotationRule::Free,

@@ -1,6 +1,6 @@
 //! How many substeps speed and pressure ask for.
 
-use super::Scene;
+use super::{Scene, TensionLaw};
 
 /// Way per substep, in spacings, that the Courant-Friedrichs-Lewy condition allows.
 pub(crate) const COURANT: f64 = 0.4;
@@ -23,21 +23,24 @@ pub(crate) struct SubstepLaw {
     free: bool,
     /// D/omega of the law C_max = (D/omega) P dt^2/dx^2.
     compressibility: f64,
+    /// What surface tension asks for.
+    tension: TensionLaw,
 }
 
 impl SubstepLaw {
     pub fn new(scene: &Scene) -> Self {
         let (spacing, target) = (scene.spacing, scene.solver.target_compression);
+        let tension = TensionLaw::new(scene);
         let free = !scene.materials().any(|material| material.phase().is_fluid() && material.is_two_sided());
         if scene.uses_pressure_grid() {
             // The grid holds the pressure; the particles only what is left of it.
             let [least, most] = GRID_COURANT_RANGE;
             let courant = if free { GRID_COURANT } else { FILLED_GRID_COURANT };
             let courant = (courant * (target / 0.01).sqrt()).clamp(least, most);
-            return SubstepLaw { spacing, target, courant, alone: false, free, compressibility: 0.0 };
+            return SubstepLaw { spacing, target, courant, alone: false, free, compressibility: 0.0, tension };
         }
         let compressibility = scene.solver.compressibility(scene.gradients());
-        SubstepLaw { spacing, target, courant: COURANT, alone: true, free, compressibility }
+        SubstepLaw { spacing, target, courant: COURANT, alone: true, free, compressibility, tension }
     }
 
     /// Whether the compression of its particles is what carries a fluid that can expand: then it stores energy.
@@ -45,10 +48,15 @@ impl SubstepLaw {
         self.alone && self.free
     }
 
+    /// Largest pressure over density that surface tension may bring about [m^2/s^2].
+    pub fn tension_pressure(&self) -> f64 {
+        self.tension.pressure
+    }
+
     /// Substeps of a frame of this length [s] by speed [m/s] (CFL), by the trust region (the same for the speed that
     /// this pressure over density [m^2/s^2] may still bring about: the compression within one substep stays below
-    /// an eighth), and by the target compression at this pressure.
-    pub fn wanted(&self, frame: f64, speed: f64, pressure: f64) -> [f64; 3] {
+    /// an eighth), by the target compression at this pressure, and by surface tension.
+    pub fn wanted(&self, frame: f64, speed: f64, pressure: f64) -> [f64; 4] {
         let root = (pressure / self.target * self.compressibility).sqrt();
         // The fastest and the most pressed are seldom one, so not the 2 P of Bernoulli.
         let trusted = if self.alone { (speed * speed + pressure).sqrt() } else { 0.0 };
@@ -56,6 +64,7 @@ impl SubstepLaw {
             frame * speed / (self.courant * self.spacing),
             frame * trusted / (self.courant * self.spacing),
             frame / self.spacing * root,
+            frame * self.tension.rate,
         ]
     }
 }

@@ -98,6 +98,7 @@ fn read_clock(input: &mut Reader<'_>) -> Result<Clock, Damage> {
         speed: input.value()?,
         pressure_limit: input.value()?,
         stiffness: input.value()?,
+        settling: false,
         push: Push { mean: Vector64::new(input.value()?, input.value()?), spread: input.value()? },
     })
 }

@@ -191,7 +191,9 @@ impl World {
             let now = World::now(&self.parts, &self.rows, &self.clock);
             let group = self.density_group().filter(|_| self.can_read_momentum());
             let measured = group.and_then(|group| group.measure_pressure(now));
-            measured.unwrap_or_else(|| self.pressures_of_multipliers())
+            let mut pressures = measured.unwrap_or_else(|| self.pressures_of_multipliers());
+            self.parts.groups.iter().for_each(|group| group.add_pressures(now, &mut pressures));
+            pressures
         })
     }
 

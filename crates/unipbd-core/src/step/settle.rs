@@ -31,7 +31,7 @@ impl World {
         let projections = projections.unwrap_or_else(|| self.projections_to_settle());
         self.clock.dt = self.parts.frame_time;
         self.clock.pressure_limit = self.pressure_limit();
-        self.clock.stiffness = 1.0;
+        (self.clock.stiffness, self.clock.settling) = (1.0, true);
         if self.parts.particles.dense() > 0 {
             let still = SETTLED * self.parts.spacing;
             (0..projections).find(|_| self.relax_once() <= still);

@@ -87,6 +87,8 @@ pub(crate) struct Clock {
     pub pressure_limit: f64,
     /// Fraction of the full stiffness of the fluids.
     pub stiffness: f64,
+    /// Whether the start of the run is being settled.
+    pub settling: bool,
     /// Whether the last frame took fewer substeps than demanded.
     pub capped: bool,
     /// Fastest dense particle after the last substep [m/s].
@@ -374,9 +376,11 @@ impl World {
             time: clock.time,
             pressure_limit: clock.pressure_limit as Real,
             stiffness: clock.stiffness as Real,
+            settling: clock.settling,
             particles: &parts.particles,
             rows,
             neighbors: &parts.neighbors,
+            without_slip: parts.rigid.as_ref().map_or(&[], RigidBodies::without_slip),
             walls: &parts.walls,
             outlines: &parts.outlines,
             parallelism: parts.parallelism,

@@ -45,7 +45,7 @@ fn temperatures_and_gravity_factors() {
         scene.heater.push(Heater { region, temperature: 1e30, rate: 1.0 });
     });
     is_refused("liquid[0].gravity_factor", "the limit is", |scene| scene.liquid[0].gravity_factor = -1e12);
-    is_refused("liquid[0].cohesion", "the limit is", |scene| scene.liquid[0].cohesion = 1e20);
+    is_refused("liquid[0].surface_tension", "the limit is", |scene| scene.liquid[0].surface_tension = 1e25);
     is_refused("body[0].gravity_factor", "the limit is", |scene| {
         scene.body.push(BodyDescription { gravity_factor: 1e9, ..BodyDescription::disc(0.2, [1.5, 0.5]) });
     });

@@ -28,8 +28,8 @@ pub(super) fn check(checker: &mut Checker) {
     let mut pulls = Vec::new();
     for (path, liquid) in entries("liquid", &scene.liquid) {
         mass(checker, &path, liquid.density, liquid.particle_mass);
-        pulls.push((path.then("cohesion"), liquid.cohesion));
-        pulls.push((path.then("adhesion"), liquid.adhesion));
+        let mass = liquid.particle_mass.unwrap_or(liquid.density * scene.spacing * scene.spacing);
+        pulls.push((path.then("surface_tension"), liquid.surface_tension / mass));
         pulls.push((path.then("gravity_factor"), liquid.gravity_factor * strength(scene.gravity)));
     }
     for (path, gas) in entries("gas", &scene.gas) {

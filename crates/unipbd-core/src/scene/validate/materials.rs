@@ -3,11 +3,13 @@
 use super::checker::{Allowed, Checker, entries};
 use super::names::{HINTED, check_unique, excerpt, hint_for_unknown, list};
 use crate::phase::{MaterialIndex, Phase};
-use crate::scene::{KeyPath, Liquid, MaterialRef, Scene};
+use crate::scene::{KeyPath, Liquid, MaterialRef, Scene, TENSION_RADIUS};
 
 const XSPH_HINT: &str = "the fraction of velocity differences smoothed per substep";
 const NU_HINT: &str = "in m^2/s, such as 1e-6 for water; 0 is none";
 const QUADRATIC_HINT: &str = "in 1/m: a particle alone falls at sqrt(g/coefficient)";
+const TENSION_HINT: &str = "a force in N: that in N/m for a sheet one metre thick, such as 0.0728 for water; 0 is none";
+const ANGLE_HINT: &str = "in degrees, measured within the liquid: 0 spreads on walls, 180 pearls off";
 const MASS_HINT: &str = "in kg; left out, density times the squared spacing";
 const LIFETIME_HINT: &str = "in seconds; left out, particles stay";
 const DENSITY_HINT: &str = "mass per area in kg/m^2, such as 1000.0 for water or 1.2 for air";
@@ -19,9 +21,13 @@ pub(super) fn check(checker: &mut Checker) {
         checker.range(path.then("xsph"), liquid.xsph, Allowed::Between(0.0, 1.0), XSPH_HINT);
         let nu = liquid.kinematic_viscosity;
         checker.range(path.then("kinematic_viscosity"), nu, Allowed::NotNegative, NU_HINT);
-        checker.range(path.then("cohesion"), liquid.cohesion, Allowed::NotNegative, "an acceleration in m/s^2");
-        checker.range(path.then("adhesion"), liquid.adhesion, Allowed::NotNegative, "an acceleration in m/s^2");
+        checker.range(path.then("surface_tension"), liquid.surface_tension, Allowed::NotNegative, TENSION_HINT);
+        checker.range(path.then("contact_angle"), liquid.contact_angle, Allowed::Between(0.0, 180.0), ANGLE_HINT);
         checker.range(path.then("quadratic_drag"), liquid.quadratic_drag, Allowed::NotNegative, QUADRATIC_HINT);
+        if liquid.surface_tension > 0.0 && checker.scene.solver.kernel_radius < TENSION_RADIUS {
+            let message = format!("needs neighbours within {TENSION_RADIUS} spacings");
+            checker.problem(path.then("surface_tension"), message, "leave out solver.kernel_radius, or make it 3.0");
+        }
         if checker.scene.solver.sleep {
             check_sleep(checker, &path, liquid);
         }
@@ -42,7 +48,7 @@ pub(super) fn check(checker: &mut Checker) {
 
 /// What acts on a liquid at rest must act the same as long as it sleeps.
 fn check_sleep(checker: &mut Checker, path: &KeyPath, liquid: &Liquid) {
-    for (key, value) in [("cohesion", liquid.cohesion), ("quadratic_drag", liquid.quadratic_drag)] {
+    for (key, value) in [("surface_tension", liquid.surface_tension), ("quadratic_drag", liquid.quadratic_drag)] {
         if value > 0.0 {
             checker.problem(path.then(key), "is not possible where liquids sleep", "leave out solver.sleep");
         }

@@ -86,19 +86,25 @@ impl SubstepRule {
             return 1.0;
         }
         let square = |part: f64| part * part;
-        let [_, _, compression] = self.law.wanted(frame, demand.speed, demand.pressure);
+        let [_, _, compression, _] = self.law.wanted(frame, demand.speed, demand.pressure);
         let least = square(compression / f64::from(substeps));
         (before * STIFFENING * square(f64::from(last) / f64::from(substeps))).max(least).min(1.0)
     }
 
-    /// The largest of the demands: speed, trust region, target compression, motion and support of bodies.
+    /// Largest pressure over density that surface tension may bring about [m^2/s^2].
+    pub fn tension_pressure(&self) -> f64 {
+        self.law.tension_pressure()
+    }
+
+    /// The largest of the demands: speed, trust region, target compression, surface tension, motion and support of bodies.
     fn wanted(&self, frame: f64, demand: Demand) -> (f64, SubstepReason) {
-        let [speed, trust, compression] = self.law.wanted(frame, demand.speed, demand.pressure);
+        let [speed, trust, compression, tension] = self.law.wanted(frame, demand.speed, demand.pressure);
         let fast = demand.speed * demand.speed > demand.pressure;
         let demands = [
             (speed, SubstepReason::Speed),
             (trust, if fast { SubstepReason::Speed } else { SubstepReason::TrustRegion }),
             (compression, SubstepReason::Compression),
+            (tension, SubstepReason::Capillary),
             (demand.body_motion, SubstepReason::Bodies),
             (demand.support, SubstepReason::Support),
         ];

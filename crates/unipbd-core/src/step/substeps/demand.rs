@@ -144,7 +144,9 @@ impl World {
 
     fn pressure_limit_of(&self, fluids: FluidStatistics) -> f64 {
         let least = LEAST_SPEED * self.parts.spacing / self.parts.frame_time;
-        PRESSURE_MARGIN * (self.depth_pressure(fluids) + 0.5 * fluids.square_of_speed()) + least * least
+        let tension = self.parts.substeps.tension_pressure();
+        let expected = self.depth_pressure(fluids) + 0.5 * fluids.square_of_speed() + tension;
+        PRESSURE_MARGIN * expected + least * least
     }
 
     /// Density of the heaviest liquid in the scene over that of the lightest: a light liquid carries a heavy one.

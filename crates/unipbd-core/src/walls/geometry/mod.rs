@@ -29,6 +29,8 @@ pub struct Shear {
     pub rate: Real,
     /// Velocity of the wall [m/s].
     pub velocity: Vector,
+    /// Number of the wall among the measured ones.
+    pub measured: Option<u16>,
 }
 
 #[derive(Clone, Copy, Debug)]
@@ -155,13 +157,15 @@ impl Walls {
             let distance = (x - plane.point).dot(plane.normal);
             let marginal = -coverage.behind(distance.max(0.0)).1;
             let near = distance < coverage.radius();
-            near.then(|| Shear { rate: 2.0 * marginal / distance.max(least), velocity: plane.velocity })
+            let rate = 2.0 * marginal / distance.max(least);
+            near.then_some(Shear { rate, velocity: plane.velocity, measured: plane.measured })
         });
         let rectangles = self.rectangles.iter().filter(|rectangle| rectangle.slip == Slip::None);
         let rectangles = rectangles.filter_map(move |rectangle| {
             let distance = (x - x.clamp(rectangle.min, rectangle.max)).length();
             let marginal = rectangle.coverage(x, coverage).1.length();
-            (marginal > 0.0).then(|| Shear { rate: 2.0 * marginal / distance.max(least), velocity: Vector::ZERO })
+            let rate = 2.0 * marginal / distance.max(least);
+            (marginal > 0.0).then_some(Shear { rate, velocity: Vector::ZERO, measured: rectangle.measured })
         });
         planes.chain(rectangles)
     }

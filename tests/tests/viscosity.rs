@@ -1,0 +1,119 @@
+//! Viscosity of any strength, and the shear that walls and bodies feel: dx = 0.1 m.
+
+use std::f64::consts::PI;
+use unipbd_core::Solver;
+use unipbd_core::math::wide;
+use unipbd_core::scene::{Scene, Substeps};
+use unipbd_tests::{bars, build, mean_of, run, scene};
+
+fn mean_speed(solver: &Solver) -> f64 {
+    mean_of(solver.velocities().iter().map(|velocity| f64::from(velocity.x)))
+}
+
+/// A film ten spacings deep on a floor without slip, on a slope of 20 degrees.
+fn film(nu: f64) -> Scene {
+    let (pull, weight) = (9.81 * 20f64.to_radians().sin(), 9.81 * 20f64.to_radians().cos());
+    scene(&format!(
+        "spacing = 0.1\ngravity = [{pull}, {}]\n[domain]\nperiodic_x = [0.0, 2.0]\n\
+         [[liquid]]\nname = \"oil\"\nkinematic_viscosity = {nu}\n\
+         [[half_plane]]\nname = \"floor\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\nslip = \"none\"\n\
+         [[block]]\nmaterial = \"oil\"\nmin = [0.0, 0.0]\nmax = [2.0, 1.0]",
+        -weight
+    ))
+}
+
+#[test]
+fn a_film_flows_as_nusselt_says_at_any_viscosity_and_loads_its_floor() {
+    let pull = 9.81 * 20f64.to_radians().sin();
+    bars("film, 10 dx", |bars| {
+        for nu in [1.0, 20.0, 500.0] {
+            for substeps in [Substeps::Auto, Substeps::Fixed(2), Substeps::Fixed(12)] {
+                let mut scene = film(nu);
+                scene.solver.substeps = substeps;
+                let mut solver = build(&scene, 2);
+                let (mut speeds, mut shear) = (Vec::new(), Vec::new());
+                run(&mut solver, if nu == 1.0 { 150 } else { 40 }, |_| ());
+                run(&mut solver, 20, |solver| {
+                    speeds.push(mean_speed(solver));
+                    shear.push(solver.wall_forces()[0].force.x);
+                });
+                // Nusselt 1916: g sin(theta) h^2/(3 nu) on average, and the floor carries the whole weight along it.
+                let what = format!("nu = {nu}, {substeps:?}");
+                bars.within(&format!("{what}: speed over Nusselt"), mean_of(speeds) * 3.0 * nu / pull, 0.97, 1.03);
+                bars.within(&format!("{what}: shear over weight"), mean_of(shear) / (2000.0 * pull), 0.97, 1.03);
+                assert_eq!(solver.take_events(), [], "there is nothing to warn of");
+            }
+        }
+    });
+}
+
+#[test]
+fn both_walls_of_a_couette_flow_feel_its_shear() {
+    let scene = scene(
+        "spacing = 0.1\ngravity = [0.0, 0.0]\n[domain]\nperiodic_x = [0.0, 2.0]\n\
+         [[liquid]]\nname = \"oil\"\nkinematic_viscosity = 5.0\nsurface = \"none\"\n\
+         [[half_plane]]\nname = \"floor\"\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\nslip = \"none\"\n\
+         [[half_plane]]\nname = \"lid\"\npoint = [0.0, 1.0]\nnormal = [0.0, -1.0]\nslip = \"none\"\nvelocity = [1.0, 0.0]\n\
+         [[block]]\nmaterial = \"oil\"\nmin = [0.0, 0.0]\nmax = [2.0, 1.0]",
+    );
+    let mut solver = build(&scene, 2);
+    run(&mut solver, 60, |_| ());
+    let forces = solver.wall_forces();
+    let shear = 1000.0 * 5.0 * 1.0 * 2.0;
+    bars("Couette, 10 dx", |bars| {
+        bars.within("shear on the floor over mu U/H", forces[0].force.x / shear, 0.97, 1.03);
+        bars.within("shear on the lid over -mu U/H", forces[1].force.x / -shear, 0.97, 1.03);
+        bars.within("mean speed over U/2", mean_speed(&solver) / 0.5, 0.97, 1.03);
+    });
+}
+
+#[test]
+fn a_disc_dragged_through_a_channel_feels_the_drag_of_faxen() {
+    let (d, nu, speed) = (1.2, 1.2, 0.1);
+    let (width, length) = (4.0 * d, 8.0 * d);
+    let mut scene = scene(&format!(
+        "spacing = 0.1\ngravity = [0.0, 0.0]\n[solver]\nsubsteps = 32\npressure_grid = \"off\"\n\
+         [[liquid]]\nname = \"oil\"\nkinematic_viscosity = {nu}\nsurface = \"none\"\n\
+         [[tank]]\nmin = [0.0, 0.0]\nmax = [{length}, {width}]\nopen = []\nslip = \"none\"\n\
+         [[block]]\nmaterial = \"oil\"\nmin = [0.0, 0.0]\nmax = [{length}, {width}]\n\
+         [[body]]\nkind = \"kinematic\"\nradius = {}\nposition = [{}, {}]\nslip = \"none\"\nmotion = {{ velocity = [{speed}, 0.0] }}",
+        0.5 * d,
+        0.4 * length,
+        0.5 * width
+    ));
+    let drag = |scene: &Scene| {
+        let mut solver = build(scene, 2);
+        let mut drags = Vec::new();
+        run(&mut solver, 10, |_| ());
+        run(&mut solver, 10, |solver| drags.push(-solver.bodies()[0].fluid_force.x));
+        mean_of(drags)
+    };
+    // Faxén 1946, for a width of four diameters.
+    let k: f64 = 0.25;
+    let wall = (1.0 / k).ln() - 0.9157 + 1.7244 * k.powi(2) - 1.7302 * k.powi(4) + 2.4056 * k.powi(6);
+    let theory = 4.0 * PI * 1000.0 * nu * speed / wall;
+    let held = drag(&scene);
+    scene.body[0].slip = unipbd_core::scene::Slip::Free;
+    bars("disc, D = 12 dx", |bars| {
+        bars.within("drag over Faxén", held / theory, 0.95, 1.05);
+        bars.at_most("drag with slip over Faxén", drag(&scene) / theory, 0.8);
+    });
+}
+
+#[test]
+fn a_disc_and_the_fluid_that_drags_it_keep_their_momentum() {
+    let scene = scene(
+        "spacing = 0.1\ngravity = [0.0, 0.0]\n[[liquid]]\nname = \"oil\"\nkinematic_viscosity = 2.0\n\
+         [[block]]\nmaterial = \"oil\"\nmin = [-2.0, -1.0]\nmax = [2.0, 1.0]\nvelocity = [0.5, 0.0]\n\
+         [[body]]\nradius = 0.5\nposition = [0.0, 0.0]\nslip = \"none\"",
+    );
+    let mut solver = build(&scene, 2);
+    let start = solver.diagnostics().momentum;
+    run(&mut solver, 30, |_| ());
+    let end = solver.diagnostics().momentum;
+    let turned = wide(solver.velocities()[0]).length();
+    bars("disc in a stream", |bars| {
+        bars.at_most("change of momentum over momentum", (end - start).length() / start.length(), 1e-4);
+        bars.within("speed of the disc over that of the fluid", solver.bodies()[0].velocity.x / turned, 0.9, 1.1);
+    });
+}
