@@ -9,6 +9,7 @@ mod finite;
 mod integrate;
 mod pipeline;
 mod query;
+mod remove;
 mod settle;
 mod sleep;
 mod solver;

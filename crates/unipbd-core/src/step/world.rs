@@ -161,7 +161,7 @@ pub(crate) struct World {
     pub(super) iterated: u32,
     /// Rows stepped in the frame so far, all substeps together.
     pub(super) stepped: u64,
-    removed: Vec<u32>,
+    pub(super) removed: Vec<u32>,
     pub(super) needs_rows: bool,
     /// Whether a hook saw the running substep.
     pub(super) hooked: bool,
@@ -395,17 +395,5 @@ impl World {
         let grid = parts.pressure_grid.as_ref().map_or(0, PressureGrid::memory_bytes) + parts.outlines.memory_bytes();
         let room = grid + self.corrections.memory_bytes() + self.changes.memory_bytes() + held(&self.velocities);
         shared + groups + effects + room
-    }
-
-    /// Removes the particles that the rules of the scene name.
-    pub(super) fn remove(&mut self) {
-        let Some(rules) = &mut self.parts.removal else { return };
-        rules.find(&self.parts.particles, self.clock.time, self.parts.parallelism, &mut self.removed);
-        if !self.removed.is_empty() {
-            let places = self.places(&self.removed);
-            self.parts.particles.remove_rows(&self.removed);
-            self.population_changed();
-            self.wake_near(&places);
-        }
     }
 }

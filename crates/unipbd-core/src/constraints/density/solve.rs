@@ -173,13 +173,15 @@ impl<K: Shape> Density<K> {
         let moment = if points.other_gradient().is_some() { Moment::Start } else { Moment::End };
         let (steps, inverse_masses) = (&self.step, now.particles.inverse_masses());
         let share = self.settings.velocity_share * self.settings.step_unit;
-        for (row, &position) in points.gradient[..self.wall_gradient.len()].iter().enumerate() {
-            if steps[row] != 0.0 && inverse_masses[row] > 0.0 && self.wall_gradient[row] != Vector::ZERO {
-                now.outlines.each_near(position, moment, |near| {
-                    let arm = now.outlines.arm(near.outline, position, moment);
+        // Chunk by chunk: most outlines are far from all points of one.
+        for (number, points) in points.gradient[..self.wall_gradient.len()].chunks(CHUNK_ROWS).enumerate() {
+            now.outlines.each_seen(points, moment, |k, near| {
+                let row = number * CHUNK_ROWS + k;
+                if steps[row] != 0.0 && inverse_masses[row] > 0.0 {
+                    let arm = now.outlines.arm(near.outline, points[k], moment);
                     out.outline_loads_mut()[near.outline].add(wide(near.gradient * (steps[row] * share)), arm);
-                });
-            }
+                }
+            });
         }
     }
 
