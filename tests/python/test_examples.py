@@ -12,10 +12,13 @@ from conftest import ROOT
 EXAMPLES = ROOT / "crates" / "unipbd-py" / "examples"
 NEEDS = {"balance": "gymnasium", "pour": "gymnasium", "first_steps": "matplotlib", "fit_cma": "cma"}
 WRITES = {"first_steps": "picture.png", "force_field": "picture.png", "trajectories": "data.npz", "session": "."}
+HEAVY = {"learn_ppo": "its test in test_learning.py is of the full tier"}
 
 
 @pytest.mark.parametrize("name", sorted(path.stem for path in EXAMPLES.glob("*.py")))
 def test_example_runs(name: str, tmp_path: Path) -> None:
+    if name in HEAVY:
+        pytest.skip(HEAVY[name])
     if name in NEEDS:
         pytest.importorskip(NEEDS[name])
     arguments = [WRITES[name]] if name in WRITES else []

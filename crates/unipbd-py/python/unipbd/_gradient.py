@@ -33,7 +33,8 @@ class Gradient:
         usable: the smallest and largest step between which differences agree; None where no three steps in a row do:
             the run is too chaotic, or too long, for its derivative to mean anything.
         tried: all steps and their derivatives, by parameter.
-        substeps: substeps per frame, fixed for all runs. runs: how many worlds were run.
+        substeps: substeps per frame, fixed for all runs.
+        runs: how many worlds were run.
     """
 
     value: Any
