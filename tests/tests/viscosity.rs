@@ -101,6 +101,33 @@ fn a_disc_dragged_through_a_channel_feels_the_drag_of_faxen() {
 }
 
 #[test]
+fn a_disc_sinks_in_a_channel_at_its_terminal_speed() {
+    let (d, nu, reynolds) = (0.8, 1.2, 1.0);
+    let (width, height) = (4.0 * d, 10.0 * d);
+    let speed = reynolds * nu / d;
+    // Faxén's drag, 21.96 mu U, carries what the disc weighs more than the fluid.
+    let heavier = 21.96 * 1000.0 * nu * speed / (9.81 * PI * d * d / 4.0);
+    let scene = scene(&format!(
+        "spacing = 0.1\n[solver]\npressure_grid = \"off\"\n[[liquid]]\nname = \"oil\"\nkinematic_viscosity = {nu}\n\
+         [[tank]]\nmin = [0.0, 0.0]\nmax = [{width}, {}]\nslip = \"none\"\n\
+         [[block]]\nmaterial = \"oil\"\nmin = [0.0, 0.0]\nmax = [{width}, {height}]\n\
+         [[body]]\nradius = {}\nposition = [{}, {}]\ndensity = {}\nslip = \"none\"",
+        height + 1.0,
+        0.5 * d,
+        0.5 * width,
+        0.75 * height,
+        1000.0 + heavier
+    ));
+    let mut solver = build(&scene, 2);
+    let mut speeds = Vec::new();
+    run(&mut solver, 60, |_| ());
+    run(&mut solver, 45, |solver| speeds.push(-solver.bodies()[0].velocity.y));
+    bars("sinking disc, D = 8 dx, Re = 1", |bars| {
+        bars.within("speed over its terminal speed", mean_of(speeds) / speed, 0.82, 1.05);
+    });
+}
+
+#[test]
 fn a_disc_and_the_fluid_that_drags_it_keep_their_momentum() {
     let scene = scene(
         "spacing = 0.1\ngravity = [0.0, 0.0]\n[[liquid]]\nname = \"oil\"\nkinematic_viscosity = 2.0\n\

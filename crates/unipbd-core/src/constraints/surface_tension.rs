@@ -96,9 +96,13 @@ impl SurfaceTension {
 
     fn find_pulls(&mut self, now: Substep<'_>) {
         let mut pulls = std::mem::take(&mut self.pulls);
-        pulls.resize(now.particles.dense(), Pull::default());
-        now.parallelism.fill(&mut pulls, |row| self.pull(now, row));
+        self.fill(now, &mut pulls);
         self.pulls = pulls;
+    }
+
+    fn fill(&self, now: Substep<'_>, pulls: &mut Vec<Pull>) {
+        pulls.resize(now.particles.dense(), Pull::default());
+        now.parallelism.fill(pulls, |row| self.pull(now, row));
     }
 
     fn pull(&self, now: Substep<'_>, row: usize) -> Pull {
@@ -139,11 +143,11 @@ impl SurfaceTension {
     }
 
     /// The force of a particle on another over the square of the volume: on liquid, or on a sample of a body.
-    fn force(&self, now: Substep<'_>, row: usize, other: usize) -> Vector {
+    fn force(&self, now: Substep<'_>, pulls: &[Pull], row: usize, other: usize) -> Vector {
         let particles = now.particles;
         let (positions, materials, phases) = (particles.positions(), particles.materials(), particles.phases());
         let solid = |of: usize| self.liquids[usize::from(materials[of])].map_or(0.0, |tension| tension.solid);
-        let (own, pull) = (self.pulls[row], self.pulls[other]);
+        let (own, pull) = (pulls[row], pulls[other]);
         let (along, inward) = if materials[other] == materials[row] && phases[row] != Phase::Rigid {
             (own.along - pull.along, own.inward + pull.inward)
         } else if phases[row] == Phase::Rigid {
@@ -162,17 +166,17 @@ impl SurfaceTension {
     /// The force of all particles around over the square of the volume.
     fn force_of_neighbors(&self, now: Substep<'_>, row: usize) -> Vector {
         let mut force = Vector::ZERO;
-        now.neighbors.for_each(row, |other| force += self.force(now, row, other));
+        now.neighbors.for_each(row, |other| force += self.force(now, &self.pulls, row, other));
         force
     }
 
     /// The pressure over density of the forces between particles [m^2/s^2] (Irving & Kirkwood 1950).
-    fn pressure(&self, now: Substep<'_>, row: usize) -> Real {
+    fn pressure(&self, now: Substep<'_>, pulls: &[Pull], row: usize) -> Real {
         let (positions, periodic) = (now.particles.positions(), now.neighbors.periodic());
         let mut virial = 0.0;
         for other in now.neighbors.runs_near(positions[row]).iter().flatten().filter(|other| *other != row) {
             let apart = periodic.min_image(positions[row] - positions[other]);
-            virial += self.force(now, row, other).dot(apart);
+            virial += self.force(now, pulls, row, other).dot(apart);
         }
         0.25 * virial * self.volume * self.volume * now.particles.inverse_masses()[row]
     }
@@ -295,10 +299,13 @@ impl ConstraintGroup for SurfaceTension {
     }
 
     fn add_pressures(&self, now: Substep<'_>, pressures: &mut [Real]) {
-        let rows = self.pulls.len().min(now.particles.dense());
+        // Read at the places of now, which a restored state has too.
+        let mut pulls = Vec::new();
+        self.fill(now, &mut pulls);
+        let rows = pulls.len();
         now.parallelism.update(&mut pressures[..rows], |row, pressure| {
             if self.liquids[usize::from(now.particles.materials()[row])].is_some() {
-                *pressure += self.pressure(now, row);
+                *pressure += self.pressure(now, &pulls, row);
             }
         });
     }

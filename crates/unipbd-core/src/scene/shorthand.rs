@@ -34,7 +34,8 @@ impl HalfPlane {
 impl Tank {
     /// A container, open at the top, from its lower left to its upper right corner [m].
     pub fn new(min: [f64; 2], max: [f64; 2]) -> Self {
-        Tank { name: String::new(), min, max, open: vec![Side::Top], friction: None, slip: Slip::Free }
+        let (open, without_slip) = (vec![Side::Top], Vec::new());
+        Tank { name: String::new(), min, max, open, friction: None, slip: Slip::Free, without_slip }
     }
 }
 

@@ -49,6 +49,9 @@ pub struct Tank {
     /// Whether a fluid with a kinematic viscosity slips along it.
     #[serde(default)]
     pub slip: Slip,
+    /// Sides along which it does not slip, whatever `slip` says.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub without_slip: Vec<Side>,
 }
 
 /// A static box: particles stay outside the rectangle.

@@ -192,7 +192,9 @@ impl World {
             let group = self.density_group().filter(|_| self.can_read_momentum());
             let measured = group.and_then(|group| group.measure_pressure(now));
             let mut pressures = measured.unwrap_or_else(|| self.pressures_of_multipliers());
-            self.parts.groups.iter().for_each(|group| group.add_pressures(now, &mut pressures));
+            if self.can_read_momentum() {
+                self.parts.groups.iter().for_each(|group| group.add_pressures(now, &mut pressures));
+            }
             pressures
         })
     }

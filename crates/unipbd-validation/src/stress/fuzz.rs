@@ -98,6 +98,7 @@ pub fn random_scene(seed: u64) -> Scene {
             open: Vec::new(),
             friction: Some(random.range(0.0, 1.0)),
             slip: if random.chance(0.3) { Slip::None } else { Slip::Free },
+            without_slip: Vec::new(),
         }],
         ..Scene::default()
     };

@@ -261,7 +261,7 @@ impl Walls {
                     normal: vector(normal),
                     friction: real(tank.friction.unwrap_or(0.0)),
                     body_friction: real(body_friction(tank.friction)),
-                    slip: tank.slip,
+                    slip: if tank.without_slip.contains(&side) { Slip::None } else { tank.slip },
                     velocity: Vector::ZERO,
                     measured: numbers[side as usize],
                 });
