@@ -100,7 +100,7 @@ pub enum Command {
     /// Summarise a scene or a log
     #[command(after_help = "Examples:\n  unipbd info scenes/open_gas.toml\n  unipbd info open_gas.mcap --json")]
     Info(InfoArgs),
-    /// Draw a log (or a scene, which is run first) as PNG frames, GIF, MP4 or a page
+    /// Draw a log (or a scene, which is run first) as pictures, a film or a page that plays
     Render(RenderArgs),
     /// Write a log as CSV tables, NumPy arrays or VTK files
     Export(ExportArgs),

@@ -28,7 +28,7 @@ pub struct RenderArgs {
     /// A log (.mcap), or a scene (.toml) to run first
     #[arg(value_name = "LOG|SCENE")]
     pub source: PathBuf,
-    /// What to write: NAME.png (one picture), NAME_%04d.png or DIRECTORY/ (a picture per frame), NAME.gif, NAME.mp4, NAME.html
+    /// What to write: NAME.png, NAME.svg or NAME.pdf (one picture), NAME_%04d.png or DIRECTORY/ (a picture per frame), NAME.gif, NAME.mp4, NAME.html
     ///
     /// MP4 needs ffmpeg.
     #[arg(short, long, value_name = "PATH")]

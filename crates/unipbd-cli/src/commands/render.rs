@@ -61,7 +61,12 @@ fn job(arguments: &RenderArgs) -> RenderJob {
 /// Says so before a scene is run for an output that must not be replaced.
 fn refuse_existing(job: &RenderJob) -> Result<(), Failure> {
     match render::plan_output(&job.output)? {
-        Output::Picture(path) | Output::Gif(path) | Output::Mp4(path) | Output::Replay(path)
+        Output::Picture(path)
+        | Output::Svg(path)
+        | Output::Pdf(path)
+        | Output::Gif(path)
+        | Output::Mp4(path)
+        | Output::Replay(path)
             if job.existing == Existing::Keep && path.symlink_metadata().is_ok() =>
         {
             Err(RenderError::Exists(path).into())
@@ -75,7 +80,7 @@ fn refuse_existing(job: &RenderJob) -> Result<(), Failure> {
 
 /// Whether more than one picture is drawn, which view and colours should outlast.
 fn is_film(job: &RenderJob) -> Result<bool, Failure> {
-    Ok(!matches!(render::plan_output(&job.output)?, Output::Picture(_)))
+    Ok(!matches!(render::plan_output(&job.output)?, Output::Picture(_) | Output::Svg(_) | Output::Pdf(_)))
 }
 
 /// Goes through all frames once to find a view and colours that fit them all. A scene is run for

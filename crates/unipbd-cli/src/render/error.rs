@@ -69,7 +69,7 @@ impl fmt::Display for RenderError {
             RenderError::Range => write!(f, "the range of the colour map must run from a smaller to a larger number"),
             RenderError::Format(path) => write!(
                 f,
-                "cannot tell the format of {}: use NAME.png, NAME_%04d.png, DIRECTORY/, NAME.gif, NAME.mp4 or NAME.html",
+                "cannot tell the format of {}: use NAME.png, NAME.svg, NAME.pdf, NAME_%04d.png, DIRECTORY/, NAME.gif, NAME.mp4 or NAME.html",
                 path.display()
             ),
             RenderError::Exists(path) => write!(f, "{} exists: use --force to replace it", path.display()),

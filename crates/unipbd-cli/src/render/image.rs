@@ -1,5 +1,8 @@
+use tiny_skia::{FillRule, LineCap, LineJoin, Paint, Path, Stroke, Transform};
+
 use super::color::{self, Rgb};
 use super::error::RenderError;
+use super::paper::Paper;
 
 /// Most pixels a picture may have: enough for 8K, little enough to allocate without worry.
 const MOST_PIXELS: u64 = 64_000_000;
@@ -101,10 +104,35 @@ impl Image {
     }
 
     /// The picture as a canvas for lines and polygons.
-    pub(super) fn canvas(&mut self) -> tiny_skia::PixmapMut<'_> {
+    fn canvas(&mut self) -> tiny_skia::PixmapMut<'_> {
         tiny_skia::PixmapMut::from_bytes(&mut self.pixels, self.width, self.height)
             .expect("the buffer has four bytes a pixel")
     }
+}
+
+impl Paper for Image {
+    fn size(&self) -> [f32; 2] {
+        [self.width as f32, self.height as f32]
+    }
+
+    fn fill(&mut self, path: &Path, color: Rgb, opacity: f32) {
+        self.canvas().fill_path(path, &paint(color, opacity), FillRule::EvenOdd, Transform::identity(), None);
+    }
+
+    fn stroke(&mut self, path: &Path, color: Rgb, width: f32) {
+        let stroke = Stroke { width, line_cap: LineCap::Round, line_join: LineJoin::Round, ..Stroke::default() };
+        self.canvas().stroke_path(path, &paint(color, 1.0), &stroke, Transform::identity(), None);
+    }
+
+    fn disc(&mut self, center: [f32; 2], radius: f32, color: Rgb, opacity: f32) {
+        Image::disc(self, center, radius, color, opacity);
+    }
+}
+
+fn paint(color: Rgb, opacity: f32) -> Paint<'static> {
+    let mut paint = Paint { anti_alias: true, ..Paint::default() };
+    paint.set_color_rgba8(color[0], color[1], color[2], (255.0 * opacity).round() as u8);
+    paint
 }
 
 /// Columns and rows of the pixels within `reach` of a point, where there are any.

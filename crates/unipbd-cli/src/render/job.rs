@@ -7,6 +7,8 @@ use super::output::{Numbered, Output, plan_output};
 use super::renderer::Renderer;
 use super::replay::{MOST_FPS, Replay};
 use super::select::{Cadence, Selection};
+use super::sheet::Sheet;
+use super::vector;
 use super::view::View;
 use crate::snapshot::{Setting, Snapshot};
 
@@ -94,6 +96,8 @@ pub fn run<E: Into<Box<dyn std::error::Error + Send + Sync>>>(
         Output::Pictures(names) => pictures(frames, renderer, job, &names),
         Output::Gif(path) => film(frames, renderer, job, &path, Format::Gif),
         Output::Mp4(path) => film(frames, renderer, job, &path, Format::Mp4),
+        Output::Svg(path) => still(frames, setting, job, &path, |sheet| sheet.svg().into_bytes()),
+        Output::Pdf(path) => still(frames, setting, job, &path, Sheet::pdf),
         Output::Replay(path) => replay(frames, setting, job, &path),
     }
 }
@@ -136,6 +140,22 @@ fn pictures(
         done.frames += 1;
     }
     if done.frames == 0 { Err(RenderError::NoFrames) } else { Ok(done) }
+}
+
+/// Writes one picture of vectors.
+fn still(
+    frames: impl Iterator<Item = Result<Snapshot, RenderError>>,
+    setting: &Setting,
+    job: &RenderJob,
+    path: &Path,
+    form: impl FnOnce(&Sheet) -> Vec<u8>,
+) -> Result<Rendered, RenderError> {
+    check_free(path, job)?;
+    let frame = job.selection.single(frames)?;
+    let sheet = vector::draw(setting, &job.options, &frame)?;
+    std::fs::write(path, form(&sheet)).map_err(|source| RenderError::Write { path: path.to_owned(), source })?;
+    let size = sheet.size().map(|length| length.round() as u32);
+    Ok(Rendered { frames: 1, path: path.to_owned(), size, fps: None })
 }
 
 /// Writes a page; the view is fitted to the first frame unless it is known.

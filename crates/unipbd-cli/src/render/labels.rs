@@ -1,7 +1,7 @@
 //! The time stamp, the colour bar, the scale bar and the legend.
 
 use super::color::Rgb;
-use super::image::Image;
+use super::paper::Paper;
 use super::scalar::Scalar;
 use super::text::{self, Align, Lettering};
 use super::theme::Theme;
@@ -10,17 +10,17 @@ use super::theme::Theme;
 const PLATE: f32 = 0.8;
 
 /// Writes the simulated time onto a plate in the upper left corner.
-pub(super) fn time_stamp(image: &mut Image, time: f64, theme: &Theme, scale: f32) {
+pub(super) fn time_stamp(paper: &mut dyn Paper, time: f64, theme: &Theme, scale: f32) {
     let height = 11.0 * scale;
     let label = format!("{time:.2} s");
     let [left, top, pad] = [16.0 * scale, 16.0 * scale, 7.0 * scale];
-    plate(image, [left - pad, top - pad, left + text::width(&label, height) + pad, top + height + pad], theme);
-    text::draw(image, &label, [left, top + height], lettering(height, Align::Left, theme));
+    plate(paper, [left - pad, top - pad, left + text::width(&label, height) + pad, top + height + pad], theme);
+    text::draw(paper, &label, [left, top + height], lettering(height, Align::Left, theme));
 }
 
 /// Draws a bar of a round length into the lower right corner of the first `rows` rows; `metre` in pixels.
-pub(super) fn scale_bar(image: &mut Image, rows: u32, metre: f64, theme: &Theme, scale: f32) {
-    let [width, bottom] = [image.width() as f32, rows as f32];
+pub(super) fn scale_bar(paper: &mut dyn Paper, rows: u32, metre: f64, theme: &Theme, scale: f32) {
+    let [width, bottom] = [paper.size()[0], rows as f32];
     let metres = round_length(0.22 * f64::from(width) / metre);
     let [length, height, pad] = [(metres * metre) as f32, 10.0 * scale, 8.0 * scale];
     let label = if metres < 0.01 {
@@ -32,23 +32,23 @@ pub(super) fn scale_bar(image: &mut Image, rows: u32, metre: f64, theme: &Theme,
     };
     let wide = length.max(text::width(&label, height));
     let [right, base] = [width - 20.0 * scale, bottom - 20.0 * scale];
-    plate(image, [right - wide - pad, base - height - 16.0 * scale, right + pad, base + pad], theme);
+    plate(paper, [right - wide - pad, base - height - 16.0 * scale, right + pad, base + pad], theme);
     let middle = right - 0.5 * wide;
-    rectangle(image, [middle - 0.5 * length, base - 4.0 * scale, middle + 0.5 * length, base], theme.text, 1.0);
-    text::draw(image, &label, [middle, base - 10.0 * scale], lettering(height, Align::Center, theme));
+    paper.rectangle([middle - 0.5 * length, base - 4.0 * scale, middle + 0.5 * length, base], theme.text, 1.0);
+    text::draw(paper, &label, [middle, base - 10.0 * scale], lettering(height, Align::Center, theme));
 }
 
 /// Lists names with their colours on a plate in the upper right corner.
-pub(super) fn legend(image: &mut Image, entries: &[(Rgb, String)], theme: &Theme, scale: f32) {
+pub(super) fn legend(paper: &mut dyn Paper, entries: &[(Rgb, String)], theme: &Theme, scale: f32) {
     let [height, line, pad] = [10.0 * scale, 19.0 * scale, 9.0 * scale];
     let widest = entries.iter().map(|(_, name)| text::width(name, height)).fold(0.0, f32::max);
-    let right = image.width() as f32 - 12.0 * scale;
+    let right = paper.size()[0] - 12.0 * scale;
     let [left, top] = [right - widest - 2.2 * height - pad, 14.0 * scale];
-    plate(image, [left - pad, top - pad, right, top + line * entries.len() as f32 - (line - height) + pad], theme);
+    plate(paper, [left - pad, top - pad, right, top + line * entries.len() as f32 - (line - height) + pad], theme);
     for (row, (color, name)) in entries.iter().enumerate() {
         let y = top + line * row as f32;
-        rectangle(image, [left, y, left + 1.3 * height, y + height], *color, 1.0);
-        text::draw(image, name, [left + 2.2 * height, y + height], lettering(height, Align::Left, theme));
+        paper.rectangle([left, y, left + 1.3 * height, y + height], *color, 1.0);
+        text::draw(paper, name, [left + 2.2 * height, y + height], lettering(height, Align::Left, theme));
     }
 }
 
@@ -56,20 +56,8 @@ fn lettering(height: f32, align: Align, theme: &Theme) -> Lettering {
     Lettering { height, align, color: theme.text, halo: theme.background }
 }
 
-fn plate(image: &mut Image, area: [f32; 4], theme: &Theme) {
-    rectangle(image, area, theme.background, PLATE);
-}
-
-fn rectangle(image: &mut Image, [left, top, right, bottom]: [f32; 4], color: Rgb, opacity: f32) {
-    let span = |from: f32, to: f32, most: u32| {
-        from.round().max(0.0) as usize..(to.round().max(0.0) as usize).min(most as usize)
-    };
-    let width = image.width() as usize;
-    for y in span(top, bottom, image.height()) {
-        for x in span(left, right, image.width()) {
-            image.blend(y * width + x, super::color::to_float(color), opacity);
-        }
-    }
+fn plate(paper: &mut dyn Paper, area: [f32; 4], theme: &Theme) {
+    paper.rectangle(area, theme.background, PLATE);
 }
 
 /// The largest of 1, 2 and 5 times a power of ten up to a length.
@@ -84,25 +72,21 @@ pub(super) fn strip_height(scale: f32) -> u32 {
 }
 
 /// Draws the colour bar into the strip that begins at the row `top`.
-pub(super) fn color_bar(image: &mut Image, scalar: &Scalar, top: u32, theme: &Theme, scale: f32) {
-    let width = image.width() as usize;
-    for index in top as usize * width..image.height() as usize * width {
-        image.blend(index, super::color::to_float(theme.background), 1.0);
-    }
+pub(super) fn color_bar(paper: &mut dyn Paper, scalar: &Scalar, top: u32, theme: &Theme, scale: f32) {
+    let [width, bottom] = paper.size();
+    paper.rectangle([0.0, top as f32, width, bottom], theme.background, 1.0);
     let height = 9.0 * scale.max(0.75);
     // The bar stands in the middle unless its title needs the room.
     let title_width = text::width(scalar.by.label(), height) + 24.0 * scale;
-    let left = (0.30 * width as f32).max(title_width);
-    let right = (0.70 * width as f32).max(left + 0.5 * (width as f32 - left));
+    let left = (0.30 * width).max(title_width);
+    let right = (0.70 * width).max(left + 0.5 * (width - left));
     let [bar, thickness] = [top as f32 + 14.0 * scale, (12.0 * scale).max(4.0)];
     for x in left as usize..right as usize {
         let color = scalar.map.color((x as f32 + 0.5 - left) / (right - left));
-        for y in bar as usize..(bar + thickness) as usize {
-            image.blend(y * width + x, super::color::to_float(color), 1.0);
-        }
+        paper.rectangle([x as f32, bar, x as f32 + 1.0, bar + thickness], color, 1.0);
     }
     let title = Lettering { height, align: Align::Right, color: theme.text, halo: theme.background };
-    text::draw(image, scalar.by.label(), [left - 14.0 * scale, bar + thickness - 1.0], title);
+    text::draw(paper, scalar.by.label(), [left - 14.0 * scale, bar + thickness - 1.0], title);
     let tick = Lettering { align: Align::Center, color: theme.faint_text, ..title };
     let ends = scalar.ends();
     for k in 0..5 {
@@ -110,7 +94,7 @@ pub(super) fn color_bar(image: &mut Image, scalar: &Scalar, top: u32, theme: &Th
         let label = number(ends[0] + t * (ends[1] - ends[0]), ends[1] - ends[0]);
         let x = left + t as f32 * (right - left);
         let base = bar + thickness + 8.0 * scale + height;
-        text::draw(image, &label, [x, base], tick);
+        text::draw(paper, &label, [x, base], tick);
     }
 }
 

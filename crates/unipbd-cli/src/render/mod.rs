@@ -17,14 +17,17 @@ mod job;
 mod labels;
 mod options;
 mod output;
+mod paper;
 mod renderer;
 mod replay;
 mod scalar;
 mod select;
+mod sheet;
 mod speeds;
 mod survey;
 mod text;
 mod theme;
+mod vector;
 mod view;
 mod walls;
 

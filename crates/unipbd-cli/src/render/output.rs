@@ -13,6 +13,10 @@ pub enum Output {
     Gif(PathBuf),
     /// A film, made by `ffmpeg`.
     Mp4(PathBuf),
+    /// One picture of vectors, as SVG.
+    Svg(PathBuf),
+    /// One picture of vectors, as PDF.
+    Pdf(PathBuf),
     /// A page that plays the run in a browser.
     Replay(PathBuf),
 }
@@ -41,7 +45,7 @@ impl Numbered {
     }
 }
 
-/// Tells from a path what to write: `NAME.png` one picture, `NAME_%04d.png` or a directory (one
+/// Tells from a path what to write: `NAME.png`, `.svg` or `.pdf` one picture, `NAME_%04d.png` or a directory (one
 /// that exists, or a name with a slash at its end) a picture per frame, `NAME.gif`, `NAME.mp4`, `NAME.html`.
 pub fn plan_output(path: &Path) -> Result<Output, RenderError> {
     let unknown = || RenderError::Format(path.to_owned());
@@ -56,6 +60,8 @@ pub fn plan_output(path: &Path) -> Result<Output, RenderError> {
         "png" => Ok(Output::Picture(path.to_owned())),
         "gif" => Ok(Output::Gif(path.to_owned())),
         "mp4" => Ok(Output::Mp4(path.to_owned())),
+        "svg" => Ok(Output::Svg(path.to_owned())),
+        "pdf" => Ok(Output::Pdf(path.to_owned())),
         "html" => Ok(Output::Replay(path.to_owned())),
         _ => Err(unknown()),
     }

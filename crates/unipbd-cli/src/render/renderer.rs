@@ -79,7 +79,8 @@ impl Renderer {
             labels::scale_bar(&mut canvas.image, rows as u32, metre, &self.theme, scale);
         }
         if annotations.legend {
-            labels::legend(&mut canvas.image, &self.legend(frame), &self.theme, scale);
+            let entries = legend(&self.setting, frame, &self.colors, self.scalar.is_some(), &self.theme);
+            labels::legend(&mut canvas.image, &entries, &self.theme, scale);
         }
         let canvas = self.canvas.insert(canvas);
         Ok(match &mut canvas.framed {
@@ -88,9 +89,8 @@ impl Renderer {
         })
     }
 
-    /// Size of lines and letters relative to a picture 960 pixels wide.
     fn scale(&self) -> f32 {
-        (self.options.width as f32 / 960.0).clamp(0.55, 4.0)
+        size_of_lines(self.options.width)
     }
 
     fn new_canvas(&self, frame: &Snapshot) -> Result<Canvas, RenderError> {
@@ -105,24 +105,6 @@ impl Renderer {
             false => None,
         };
         Ok(Canvas { camera, walls, image, framed })
-    }
-
-    /// Materials that colours tell apart, and bodies by their names; those with the same name and number once.
-    fn legend(&self, frame: &Snapshot) -> Vec<(Rgb, String)> {
-        let mut entries: Vec<(Rgb, String)> = Vec::new();
-        if self.scalar.is_none() {
-            let there = |index: usize| frame.materials.iter().any(|material| usize::from(*material) == index);
-            let named = self.setting.materials.iter().zip(&self.colors).enumerate();
-            let shown = named.filter(|(index, (material, _))| material.phase != Phase::Rigid && there(*index));
-            entries.extend(shown.map(|(_, (material, color))| (*color, material.name.clone())));
-        }
-        for (index, body) in frame.bodies.iter().enumerate().filter(|(_, body)| !body.removed) {
-            let name = body.name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end().to_owned();
-            if !name.is_empty() && !entries.iter().any(|(_, other)| *other == name) && entries.len() < MOST_ENTRIES {
-                entries.push((bodies::color(body, index, &self.theme), name));
-            }
-        }
-        entries
     }
 
     fn draw_particles(&mut self, canvas: &mut Canvas, frame: &Snapshot) {
@@ -162,4 +144,30 @@ impl Renderer {
             wall.draw(image, camera, &self.theme, scale);
         }
     }
+}
+
+/// Size of lines and letters relative to a picture 960 pixels wide.
+pub(super) fn size_of_lines(width: u32) -> f32 {
+    (width as f32 / 960.0).clamp(0.55, 4.0)
+}
+
+/// Materials that their colours tell apart, and bodies by their names; those with one name and different numbers once.
+pub(super) fn legend(
+    setting: &Setting,
+    frame: &Snapshot,
+    colors: &[Rgb],
+    by_number: bool,
+    theme: &Theme,
+) -> Vec<(Rgb, String)> {
+    let there = |index: usize| frame.materials.iter().any(|material| usize::from(*material) == index);
+    let named = setting.materials.iter().zip(colors).enumerate();
+    let shown = named.filter(|(index, (material, _))| !by_number && material.phase != Phase::Rigid && there(*index));
+    let mut entries: Vec<(Rgb, String)> = shown.map(|(_, (of, color))| (*color, of.name.clone())).collect();
+    for (index, body) in frame.bodies.iter().enumerate().filter(|(_, body)| !body.removed) {
+        let name = body.name.trim_end_matches(|c: char| c.is_ascii_digit()).trim_end();
+        if !name.is_empty() && !entries.iter().any(|(_, other)| other == name) && entries.len() < MOST_ENTRIES {
+            entries.push((bodies::color(body, index, theme), name.to_owned()));
+        }
+    }
+    entries
 }

@@ -1,9 +1,9 @@
 //! Letters made of lines on a small grid, drawn as anti-aliased strokes at any size.
 
-use tiny_skia::{LineCap, LineJoin, Paint, Path, PathBuilder, Stroke, Transform};
+use tiny_skia::PathBuilder;
 
 use super::color::Rgb;
-use super::image::Image;
+use super::paper::Paper;
 
 /// Where a text stands relative to its anchor.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,7 +129,7 @@ pub(super) struct Lettering {
 }
 
 /// Draws a line of text whose anchor lies on the base line [pixels].
-pub(super) fn draw(image: &mut Image, text: &str, anchor: [f32; 2], lettering: Lettering) {
+pub(super) fn draw(paper: &mut dyn Paper, text: &str, anchor: [f32; 2], lettering: Lettering) {
     let Lettering { height, align, color, halo } = lettering;
     let unit = height / CAPITAL;
     let shift = match align {
@@ -148,16 +148,9 @@ pub(super) fn draw(image: &mut Image, text: &str, anchor: [f32; 2], lettering: L
     }
     if let Some(path) = path.finish() {
         let width = (0.95 * unit).max(1.1);
-        stroke_path(image, &path, halo, width + 2.0 * unit);
-        stroke_path(image, &path, color, width);
+        paper.stroke(&path, halo, width + 2.0 * unit);
+        paper.stroke(&path, color, width);
     }
-}
-
-fn stroke_path(image: &mut Image, path: &Path, color: Rgb, width: f32) {
-    let mut paint = Paint::default();
-    paint.set_color_rgba8(color[0], color[1], color[2], 255);
-    let stroke = Stroke { width, line_cap: LineCap::Round, line_join: LineJoin::Round, ..Stroke::default() };
-    image.canvas().stroke_path(path, &paint, &stroke, Transform::identity(), None);
 }
 
 fn add_stroke(path: &mut PathBuilder, stroke: &str, place: impl Fn(f32, f32) -> [f32; 2]) {

@@ -1,9 +1,9 @@
-use tiny_skia::{FillRule, LineCap, LineJoin, Paint, Path, PathBuilder, Stroke, Transform};
+use tiny_skia::{Path, PathBuilder};
 use unipbd_core::math::Vector64;
 use unipbd_core::observe::WallOutline;
 
 use super::color::Rgb;
-use super::image::Image;
+use super::paper::Paper;
 use super::theme::Theme;
 use super::view::Camera;
 
@@ -37,14 +37,14 @@ impl Wall {
 
     /// Draws a line with a lighter band on its solid side, which lies to the right of the way from
     /// point to point. The inside of a solid box and the far side of an endless wall are filled.
-    pub fn draw(&self, image: &mut Image, camera: &Camera, theme: &Theme, scale: f32) {
+    pub fn draw(&self, paper: &mut dyn Paper, camera: &Camera, theme: &Theme, scale: f32) {
         let points = &self.points;
         let solid_inside = self.closed && area(points) < 0.0;
         let band_depth = f64::from(BAND * scale) / camera.scale;
         let depth = if self.endless { 2.0 * camera.diagonal() } else { band_depth };
         let filled = if solid_inside { polygon(points, camera) } else { band(points, self.closed, depth, camera) };
-        fill(image, filled, theme.wall_fill);
-        stroke(image, line(points, self.closed, camera), theme.wall_line, 1.8 * scale);
+        fill(paper, filled, theme.wall_fill);
+        stroke(paper, line(points, self.closed, camera), theme.wall_line, 1.8 * scale);
     }
 
     /// The mirror images of a point in those straight pieces that have it before them, no farther
@@ -139,28 +139,14 @@ fn add_points<'a>(path: &mut PathBuilder, points: impl Iterator<Item = &'a Vecto
     }
 }
 
-pub(super) fn fill(image: &mut Image, path: Option<Path>, color: Rgb) {
-    let Some(path) = path else { return };
-    image.canvas().fill_path(&path, &solid(color), FillRule::EvenOdd, Transform::identity(), None);
-}
-
-pub(super) fn stroke(image: &mut Image, path: Option<Path>, color: Rgb, width: f32) {
-    let Some(path) = path else { return };
-    let stroke = Stroke { width, line_cap: LineCap::Round, line_join: LineJoin::Round, ..Stroke::default() };
-    image.canvas().stroke_path(&path, &solid(color), &stroke, Transform::identity(), None);
-}
-
-/// A line through pixels.
-pub(super) fn stroke_pixels(image: &mut Image, points: &[[f32; 2]], color: Rgb, width: f32) {
-    let mut path = PathBuilder::new();
-    for (k, [x, y]) in points.iter().enumerate() {
-        if k == 0 { path.move_to(*x, *y) } else { path.line_to(*x, *y) }
+pub(super) fn fill(paper: &mut dyn Paper, path: Option<Path>, color: Rgb) {
+    if let Some(path) = path {
+        paper.fill(&path, color, 1.0);
     }
-    stroke(image, path.finish(), color, width);
 }
 
-fn solid(color: Rgb) -> Paint<'static> {
-    let mut paint = Paint { anti_alias: true, ..Paint::default() };
-    paint.set_color_rgba8(color[0], color[1], color[2], 255);
-    paint
+pub(super) fn stroke(paper: &mut dyn Paper, path: Option<Path>, color: Rgb, width: f32) {
+    if let Some(path) = path {
+        paper.stroke(&path, color, width);
+    }
 }

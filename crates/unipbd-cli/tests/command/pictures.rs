@@ -58,6 +58,25 @@ fn axes_scale_bar_and_legend_change_a_picture_outside_the_scene() {
 }
 
 #[test]
+fn stills_of_vectors_have_a_disc_per_particle() {
+    let place = Place::new();
+    place.run(&["drop.toml", "-q"]).exits(0);
+    place.run(&["render", "drop.mcap", "-o", "end.svg", "--axes", "--legend", "--scale-bar"]).exits(0);
+    let svg = std::fs::read_to_string(place.path("end.svg")).unwrap();
+    assert_eq!(svg.matches("<circle").count(), 100);
+    assert!(
+        svg.starts_with("<svg")
+            && svg.ends_with("</svg>\n")
+            && svg.matches("<g").count() == svg.matches("</g>").count()
+    );
+    place.run(&["render", "drop.mcap", "-o", "end.pdf", "--color", "speed"]).exits(0);
+    let pdf = std::fs::read(place.path("end.pdf")).unwrap();
+    assert!(pdf.starts_with(b"%PDF-1.7") && pdf.ends_with(b"%%EOF"));
+    place.run(&["render", "drop.mcap", "-o", "again.pdf", "--color", "speed"]).exits(0);
+    assert!(std::fs::read(place.path("again.pdf")).unwrap() == pdf, "the same bytes");
+}
+
+#[test]
 fn a_page_plays_a_scene_or_a_log() {
     let place = Place::new();
     place.run(&["render", "drop.toml", "-o", "scene.html", "-q"]).exits(0);
