@@ -192,15 +192,15 @@ fn a_shallow_pool_falls_asleep_at_any_scale() {
 }
 
 #[test]
-fn viscous_and_cohesive_liquids_are_the_same_at_any_scale() {
+fn viscous_liquids_with_surface_tension_are_the_same_at_any_scale() {
     let text = format!(
         r#"{HEAD}
         [[liquid]]
         name = "oil"
         density = <900 kg/m2>
         kinematic_viscosity = <0.01 m2/s>
-        cohesion = 2.0
-        adhesion = 3.0
+        surface_tension = <20 N>
+        contact_angle = 60.0
         quadratic_drag = <0.1 1/m>
         [[liquid]]
         name = "water"
