@@ -443,3 +443,30 @@ fn bodies_that_deep_water_presses_on_supports_rest() {
         });
     }
 }
+
+#[test]
+fn a_thin_body_dams_water() {
+    for thickness in [1.0, 2.0, 3.0, 4.0] {
+        let (spacing, width) = (0.04, 0.76);
+        let size = thickness * spacing;
+        let dam = width + 0.5 * size;
+        let rest = format!(
+            "[[tank]]\nmin = [0.0, 0.0]\nmax = [1.5, 2.0]\nopen = [\"top\"]\n[[body]]\nname = \"dam\"\nkind = \"static\"\n\
+             size = [{size:?}, 2.4]\nposition = [{dam:?}, 0.6]\n"
+        );
+        let scene = water(width, 1.0, spacing, &rest);
+        let choice = scene.pressure_grid();
+        assert_eq!(choice.used, thickness == 4.0, "{thickness}: {}", choice.reason);
+        assert!(choice.used || choice.reason.contains("dam"), "{}", choice.reason);
+        let mut solver = build(&scene, 1);
+        run(&mut solver, 60, |_| ());
+        let mut forces = Vec::new();
+        run(&mut solver, 90, |solver| forces.push(solver.bodies()[0].fluid_force.x));
+        let across = of_phase(&solver, Phase::Liquid).filter(|&row| f64::from(solver.positions()[row].x) > dam).count();
+        let force = mean_of(forces.into_iter()) / (0.5 * 1000.0 * 9.81);
+        bars("a static body as a dam", |bars| {
+            bars.at_most(&format!("{thickness} dx thick: particles across"), across as f64, 0.0);
+            bars.within(&format!("{thickness} dx thick: force"), force, 0.96, 1.03);
+        });
+    }
+}

@@ -6,16 +6,12 @@ use crate::constraints::OutlineLoad;
 use crate::math::{Vector, Vector64, vector};
 use crate::particles::Particles;
 use crate::rigid::{Body, BodyKind, Pose};
-use crate::shapes::{Shape, edges};
+use crate::scene::WALL_OF_GRID;
+use crate::shapes::Shape;
 use crate::walls::{OutlineSpec, Outlines, Place};
-use std::f64::consts::PI;
 
 /// Bodies thinner than this, in spacings, keep samples: they cover too little of a kernel to hold a fluid.
 const THIN: f64 = 1.0;
-
-/// Static bodies of this thickness, in spacings, are walls of the pressure grid: two of its cells. Thinner ones could
-/// lie between the corners of cells.
-const WALL_OF_GRID: f64 = 4.0;
 
 /// How fluids and particles meet the bodies of a scene.
 #[derive(Clone, Copy, Debug)]
@@ -42,7 +38,7 @@ pub(super) enum Meeting {
 
 /// Whether a body is a wall to fluids by its outline, where the scene lets it.
 pub(crate) fn is_outlined(body: &Body, spacing: f64) -> bool {
-    body.kind != BodyKind::Dynamic && !body.samples.is_empty() && thickness(body) >= THIN * spacing
+    body.kind != BodyKind::Dynamic && !body.samples.is_empty() && shape(body).thickness() >= THIN * spacing
 }
 
 /// The shape of a body about its centre of mass.
@@ -51,15 +47,6 @@ pub(super) fn shape(body: &Body) -> Shape {
         true => Shape::Disc { radius: body.radius },
         false => Shape::Polygon(body.outline.clone()),
     }
-}
-
-/// Twice the area over the perimeter: the thickness of a long body [m].
-fn thickness(body: &Body) -> f64 {
-    let perimeter = match body.radius > 0.0 {
-        true => 2.0 * PI * body.radius,
-        false => edges(&body.outline).map(|(from, to)| (to - from).length()).sum(),
-    };
-    2.0 * shape(body).moments().area / perimeter
 }
 
 impl RigidBodies {
@@ -83,7 +70,7 @@ impl RigidBodies {
 
     fn is_wall_of_grid(&self, body: u32) -> bool {
         let view = &self.views()[body as usize];
-        view.kind == BodyKind::Static && thickness(view) >= WALL_OF_GRID * self.spacing
+        view.kind == BodyKind::Static && shape(view).thickness() >= WALL_OF_GRID * self.spacing
     }
 
     /// Takes the outlines that the fluid meets.

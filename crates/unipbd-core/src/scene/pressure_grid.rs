@@ -1,10 +1,14 @@
 //! Whether a scene uses the pressure grid.
 
-use super::{BodySolver, Scene, Substeps};
+use super::{BodyDescription, BodyKind, BodySolver, Scene, Substeps};
 use serde::{Deserialize, Serialize};
 
 /// Fewer particles fill so few cells that the grid is all surface.
 const LEAST_PARTICLES: f64 = 60.0;
+
+/// Bodies that nothing moves are walls of the grid from this thickness on, in spacings: two of its cells. Thinner ones
+/// could lie between the corners of its cells, and water of 50 spacings leaks through them.
+pub(crate) const WALL_OF_GRID: f64 = 4.0;
 
 /// Whether a grid carries the smooth part of the pressure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -67,6 +71,9 @@ impl Scene {
         if self.liquid.iter().any(|liquid| liquid.surface_tension != 0.0) {
             return PressureGridChoice::off("its cells are too wide for surface tension");
         }
+        if let Some(name) = self.thin_wall() {
+            return PressureGridChoice::off(format!("its cells are too wide for the wall that the body {name} is"));
+        }
         let closed = self.tank.iter().any(|tank| tank.open.is_empty());
         if !closed && self.materials().any(|material| material.is_two_sided()) {
             return PressureGridChoice::off("gas in the open does not keep its momentum with it");
@@ -76,6 +83,18 @@ impl Scene {
             return PressureGridChoice::off(format!("{particles} particles are too few for it to pay"));
         }
         PressureGridChoice { used: true, reason: "substeps then follow the speed alone".into() }
+    }
+
+    /// A body that no fluid moves and that is thinner than walls of the grid are.
+    fn thin_wall(&self) -> Option<String> {
+        let fixed = |body: &&BodyDescription| body.kind != BodyKind::Dynamic && !body.sensor;
+        // The width of a compact body is twice its reach from the centre.
+        let thin = |body: &&BodyDescription| {
+            let shape = body.shape();
+            let reach = -shape.nearest(shape.moments().centroid).distance;
+            shape.thickness().max(2.0 * reach) < (WALL_OF_GRID - 0.5) * self.spacing
+        };
+        self.body.iter().filter(fixed).find(thin).map(|body| format!("{:?}", body.name))
     }
 
     /// The properties of the scene that the pressure grid does not support, and what to do about each.

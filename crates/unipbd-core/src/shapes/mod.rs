@@ -105,6 +105,15 @@ impl Shape {
         }
     }
 
+    /// Twice the area over the perimeter: the thickness of a long shape, the radius of a disc [m].
+    pub fn thickness(&self) -> f64 {
+        let perimeter = match self {
+            Shape::Disc { radius } => TAU * radius,
+            Shape::Polygon(corners) => polygon::edges(corners).map(|(from, to)| (to - from).length()).sum(),
+        };
+        2.0 * self.moments().area / perimeter
+    }
+
     /// The shape moved by `offset`; a disc stays about the origin.
     pub fn translated(&self, offset: Vector64) -> Shape {
         match self {
