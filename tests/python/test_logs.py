@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -82,3 +84,21 @@ def test_a_log_that_was_cut_off_gives_its_frames(sim: up.Simulation, tmp_path: P
     path.write_bytes(path.read_bytes()[: path.stat().st_size * 2 // 3])
     log = up.read_log(path)
     assert log.truncated and 0 < len(list(log)) < 31
+
+
+def test_exported_arrays_are_the_log_with_gaps_where_particles_are_not_there(plume: up.Scene, tmp_path: Path) -> None:
+    sim = plume.build(seed=3, threads=1)
+    path = tmp_path / "plume.mcap"
+    with sim.record(path, fields="velocity"):
+        sim.step(20)
+    command = Path(sys.executable).with_name("unipbd")
+    subprocess.run([command, "export", path, "-o", tmp_path / "plume.npz", "-q"], check=True)
+    arrays = np.load(tmp_path / "plume.npz")
+    log = up.read_log(path)
+    assert arrays["position"].shape == (21, len(arrays["id"]), 2) and np.isnan(arrays["position"]).any()
+    for number, frame in enumerate(log):
+        columns = np.searchsorted(arrays["id"], frame.ids)
+        np.testing.assert_array_equal(arrays["position"][number, columns], frame.positions)
+        np.testing.assert_array_equal(arrays["velocity"][number, columns], frame.velocities)
+        assert np.isfinite(arrays["position"][number, :, 0]).sum() == len(frame.ids)
+    np.testing.assert_array_equal(arrays["kinetic_energy"], log.diagnostics()["kinetic_energy"])
