@@ -109,7 +109,7 @@ impl Shape {
     pub fn thickness(&self) -> f64 {
         let perimeter = match self {
             Shape::Disc { radius } => TAU * radius,
-            Shape::Polygon(corners) => polygon::edges(corners).map(|(from, to)| (to - from).length()).sum(),
+            Shape::Polygon(corners) => edges(corners).map(|(from, to)| (to - from).length()).sum(),
         };
         2.0 * self.moments().area / perimeter
     }

@@ -1,8 +1,8 @@
 //! A page that plays a run in any browser: one file, no server.
 //!
 //! The page holds a description of the scene as JSON and its frames as gzip in base64. A frame is the number of particles
-//! (u32) and a mark of whether they are those of the frame before; if not, the row that each had there (u32, the largest
-//! for a new one) and its material (u8). Then, for x and y, how far each particle is from where it would be had it gone
+//! (u32) and a mark of whether they are those of the frame before; if not, the row that each had there (the largest
+//! for a new one; as a u32 that is added to the row of the particle before plus one) and its material (u8). Then, for x and y, how far each particle is from where it would be had it gone
 //! on as before, in quanta, folded to an unsigned number (0, -1, 1, -2 ...) of 16 bits: all low bytes, then all high
 //! ones. Then a byte per particle for each recorded column, and x, y and angle of each body (f32, NaN for one that is
 //! gone).

@@ -54,7 +54,10 @@ impl Motion {
         let mut bytes = (frame.ids.len() as u32).to_le_bytes().to_vec();
         bytes.push(u8::from(from.is_some()));
         if let Some(from) = &from {
-            bytes.extend(from.iter().flat_map(|row| row.to_le_bytes()));
+            // Mostly the row after that of the particle before: zeros.
+            let before = std::iter::once(NEW).chain(from.iter().copied());
+            let steps = from.iter().zip(before).map(|(row, before)| row.wrapping_sub(before.wrapping_add(1)));
+            bytes.extend(steps.flat_map(u32::to_le_bytes));
             bytes.extend(&materials);
         }
         for (axis, places) in places.iter().enumerate() {

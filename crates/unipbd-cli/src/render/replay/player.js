@@ -27,7 +27,8 @@
       let materials = before && before.materials;
       if (fresh) {
         from = new Uint32Array(count);
-        for (let row = 0; row < count; row++) from[row] = view.getUint32(at + 4 * row, true);
+        let before = 0xffffffff;
+        for (let row = 0; row < count; row++) before = from[row] = (before + 1 + view.getUint32(at + 4 * row, true)) >>> 0;
         at += 4 * count;
         materials = take(count);
       }
