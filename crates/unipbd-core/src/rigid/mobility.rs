@@ -22,6 +22,9 @@ pub(crate) type Mobility = [[f64; 3]; 3];
 
 /// What a body presses on holds it if its mobility along the contact is this part of that of the body.
 const HOLDS: f64 = 0.05;
+/// A body whose mobility along a contact is this part of that of the free body is held: what is left is rounding, and
+/// taking out its direction would take out any other.
+const ROUNDING: f64 = 1e-9;
 /// Rounds over all rows: the bodies of a stack are held from the ground up.
 const ROUNDS: usize = 8;
 
@@ -42,7 +45,7 @@ impl Mobilities {
         for _ in 0..ROUNDS {
             let left = self.rows.len();
             let mobilities = &mut self.of_bodies;
-            self.rows.retain(|row| !hold(mobilities, row));
+            self.rows.retain(|row| !hold(mobilities, free, row));
             if self.rows.is_empty() || self.rows.len() == left {
                 break;
             }
@@ -56,10 +59,13 @@ impl Mobilities {
 }
 
 /// Takes the direction of a row from the mobility of one body, if the other one holds it.
-fn hold(mobilities: &mut [Mobility], row: &HeldRow) -> bool {
+fn hold(mobilities: &mut [Mobility], free: &[InverseMass], row: &HeldRow) -> bool {
     let [(a, along_a), (b, along_b)] = row.sides;
     let along = |mobilities: &[Mobility], body: u32, way: [f64; 3]| match mobilities.get(body as usize) {
-        Some(mobility) => dot(times(mobility, way), way),
+        Some(mobility) => {
+            let [found, most] = [*mobility, of_free(free[body as usize])].map(|of| dot(times(&of, way), way));
+            if found > ROUNDING * most { found } else { 0.0 }
+        }
         None => 0.0,
     };
     let (of_a, of_b) = (along(mobilities, a, along_a), along(mobilities, b, along_b));
@@ -116,6 +122,20 @@ mod tests {
         let [x, y, turn] = found(&[FREE], &points).of(0);
         assert_eq!(x, [2.0, 0.0, 0.0]);
         assert!(y.into_iter().chain(turn).all(|entry| entry.abs() < 1e-12), "{y:?} {turn:?}");
+    }
+
+    #[test]
+    fn more_contacts_than_a_body_has_freedoms_leave_it_without_mobility() {
+        // A box flush in a corner, with arms that no binary fraction holds.
+        let floor = [-0.3, 0.3, 0.1].map(|arm| row(0, [0.0, 1.0, arm], WALL, [0.0; 3]));
+        let side = [-0.3, 0.3, 0.7].map(|arm| row(0, [1.0, 0.0, arm / 3.0], WALL, [0.0; 3]));
+        let slanted = [0.1, 0.2].map(|arm| row(0, [0.6, 0.8, arm], WALL, [0.0; 3]));
+        let rows: Vec<HeldRow> = floor.into_iter().chain(side).chain(slanted).collect();
+        for first in 0..rows.len() {
+            let turned: Vec<HeldRow> = rows.iter().cycle().skip(first).take(rows.len()).copied().collect();
+            let mobility = found(&[InverseMass { linear: 1.0 / 27.4, angular: 1.0 / 0.36 }], &turned).of(0);
+            assert!(mobility.iter().flatten().all(|entry| entry.abs() < 1e-9), "{first}: {mobility:?}");
+        }
     }
 
     #[test]

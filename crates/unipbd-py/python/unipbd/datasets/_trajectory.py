@@ -21,7 +21,7 @@ from .._work import write
 from . import _fields
 from ._draw import Crowded, Drawer
 from ._recipe import Recipe
-from ._types import kinds_of
+from ._types import kinds_of, outlined_bodies, samples_of
 
 COLUMNS = (
     "time kinetic_energy potential_energy momentum_x momentum_y density_error_max density_error_mean speed_max substeps"
@@ -92,6 +92,10 @@ class _Run:
         if not len(self.kept):
             raise UnipbdError("the scene has no particles to store")
         self.kinds = kinds_of(self.sim)[self.kept]
+        self.outlined = outlined_bodies(self.sim)
+        self.outlined_kinds = [
+            self.sim.bodies[name].kind for name in self.outlined for _ in range(len(self.sim.bodies[name].samples))
+        ]
         walls = self.recipe.walls
         self.walls = wall_particles(self.scene, int(walls["layers"]), float(walls["reach"]))
         self.count = len(self.sim)
@@ -116,7 +120,7 @@ class _Run:
 
     def _run(self) -> None:
         frames = self.recipe.frames + 1
-        shape = (frames, len(self.kept) + len(self.walls.positions), 2)
+        shape = (frames, len(self.kept) + len(self.walls.positions) + len(self.outlined_kinds), 2)
         first = self._resume(shape)
         if not first:
             self.place.mkdir(parents=True, exist_ok=True)
@@ -154,7 +158,12 @@ class _Run:
         x = self.sim.positions[self.kept]
         self.positions[number, : len(x)] = x
         elapsed = number * self.recipe.stride * self.sim.frame_time
-        self.positions[number, len(x) :] = self.walls.at(elapsed, bool(self.recipe.walls["wrap"]))
+        end = len(x) + len(self.walls.positions)
+        self.positions[number, len(x) : end] = self.walls.at(elapsed, bool(self.recipe.walls["wrap"]))
+        for name in self.outlined:
+            places = samples_of(self.sim.bodies[name])
+            self.positions[number, end : end + len(places)] = places
+            end += len(places)
         seen = self.sim.diagnostics()
         seen["momentum_x"], seen["momentum_y"] = seen["momentum"]
         self.numbers[number] = [float(seen[name]) for name in COLUMNS]
@@ -227,10 +236,14 @@ class _Run:
             "seed": self.seed,
             "scene": self.scene.to_dict(),
             "particles": len(self.kept),
-            "wall_particles": len(moving.positions),
+            "wall_particles": len(moving.positions) + len(self.outlined_kinds),
             "materials": names,
             "material_of_particle": _runs(material.tolist()),
-            "kinds": _runs(self.kinds.tolist() + np.where(moving.types == 2, "sliding wall", "wall").tolist()),
+            "kinds": _runs(
+                self.kinds.tolist()
+                + np.where(moving.types == 2, "sliding wall", "wall").tolist()
+                + self.outlined_kinds
+            ),
             "bounds": bounds(self.scene, self.walls),
             "frame_time": self.sim.frame_time * self.recipe.stride,
             "state_hash_first": f"{self.hash_of_start:016x}",

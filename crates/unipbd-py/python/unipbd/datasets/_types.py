@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 import numpy.typing as npt
 
+from .._body import Body
 from .._phase import GAS, LIQUID, RIGID
 from .._simulation import Simulation
 
@@ -33,13 +34,31 @@ def kinds_of(sim: Simulation) -> npt.NDArray[np.str_]:
     for body in sim.bodies.values():
         if not len(rigid) or not len(body.samples):
             continue
-        cos, sin = np.cos(body.angle), np.sin(body.angle)
-        places = body.samples @ np.array([[cos, sin], [-sin, cos]]) + body.position
+        places = samples_of(body)
         distance = np.linalg.norm(x[:, None] - places[None], axis=2).min(axis=1)
         closer = distance < nearest
         kinds[rigid[closer]] = body.kind
         nearest[closer] = distance[closer]
     return kinds
+
+
+def samples_of(body: Body) -> npt.NDArray[np.float64]:
+    """The samples of a body where they are."""
+    cos, sin = np.cos(body.angle), np.sin(body.angle)
+    return np.asarray(body.samples @ np.array([[cos, sin], [-sin, cos]]) + body.position)
+
+
+def outlined_bodies(sim: Simulation) -> list[str]:
+    """Bodies whose samples are not among the particles: fluids meet them by their outlines. Good at the start."""
+    rigid = sim.positions[sim.phases == RIGID].astype(np.float64)
+    names = []
+    for name, body in sim.bodies.items():
+        if body.kind == "dynamic" or not len(body.samples):
+            continue
+        apart = np.linalg.norm(rigid - samples_of(body)[0], axis=1)
+        if not len(apart) or apart.min() > 0.01 * sim.spacing:
+            names.append(name)
+    return names
 
 
 def particle_types(
