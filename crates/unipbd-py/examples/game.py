@@ -4,6 +4,10 @@ taken away, and the pit is drawn in the terminal.
     python game.py
 """
 
+from __future__ import annotations
+
+from typing import Any
+
 import numpy as np
 
 import unipbd
@@ -12,7 +16,7 @@ COLUMNS, ROWS = 72, 24
 LOW, HIGH = (-3.0, -0.3), (3.0, 3.7)
 
 
-def pit():
+def pit() -> unipbd.Scene:
     """A pit with a bar that swings in it."""
     scene = unipbd.Scene(spacing=0.05)
     motion = {"amplitude": (1.6, 0.0), "frequency": 0.25}
@@ -22,28 +26,28 @@ def pit():
     return scene
 
 
-def drop(sim, number, random):
+def drop(sim: unipbd.Simulation, number: int, random: np.random.Generator) -> None:
     """Adds a body above the pit, of a shape and at a place drawn by lot."""
     size = 0.18 + 0.06 * random.uniform(-1, 1)
-    shape = [
+    shapes: list[dict[str, Any]] = [
         {"radius": size},
         {"size": (3 * size, 1.5 * size)},
         {"outline": [(-size, -size), (size, -size), (0, size)]},
-    ][number % 3]
+    ]
     spin = 200 * random.uniform(-1, 1)
     with sim.edit() as edit:
         place = (1.8 * random.uniform(-1, 1), 3.5)
-        edit.add_body(f"body {number}", at=place, restitution=0.2, spin_deg=spin, **shape)
+        edit.add_body(f"body {number}", at=place, restitution=0.2, spin_deg=spin, **shapes[number % 3])
 
 
-def top(sim):
+def top(sim: unipbd.Simulation) -> str | None:
     """The highest body in the pit: what a ray from above meets first."""
     hits = [sim.ray_cast((x, 3.0), (x, 0.0), walls=False)[:1] for x in np.linspace(-2.6, 2.6, 50)]
     loose = [hit[0] for hit in hits if hit and hit[0].body != "bar"]
     return max(loose, key=lambda hit: hit.point[1]).body if loose else None
 
 
-def draw(sim):
+def draw(sim: unipbd.Simulation) -> str:
     """The pit in letters: ``#`` for walls, ``=`` for the bar, a letter for each body."""
     lines = []
     for row in range(ROWS):
@@ -61,7 +65,7 @@ def draw(sim):
     return "\n".join(lines)
 
 
-def main(seconds=15):
+def main(seconds: int = 15) -> unipbd.Simulation:
     """Plays for this long [s]; returns the simulation."""
     sim = pit().build()
     sim.watch_contacts()
