@@ -91,6 +91,10 @@ impl Scene {
         // The width of a compact body is twice its reach from the centre.
         let thin = |body: &&BodyDescription| {
             let shape = body.shape();
+            // The scene may not have been validated yet.
+            if shape.check().is_err() {
+                return false;
+            }
             let reach = -shape.nearest(shape.moments().centroid).distance;
             shape.thickness().max(2.0 * reach) < (WALL_OF_GRID - 0.5) * self.spacing
         };
