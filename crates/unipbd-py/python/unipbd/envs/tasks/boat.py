@@ -43,7 +43,7 @@ class BoatTask(Task):
         scene.add_tank(min=(-0.6, 0), max=(LENGTH, 1.6))
         hull = [[-0.3, 0.12], [-0.2, -0.12], [0.2, -0.12], [0.3, 0.12]]
         scene.add_body("boat", at=(PLACE, DEPTH + 0.02), outline=hull, density=400.0)
-        scene.add_body("paddle", at=(0.1, 0.55), size=(0.12, 1.1), kind="kinematic")
+        scene.add_body("paddle", at=(0.04, 0.55), size=(0.24, 1.1), kind="kinematic")
         return scene
 
     def begin(self, sim: Simulation, random: np.random.Generator) -> Memory:
@@ -57,7 +57,7 @@ class BoatTask(Task):
         t = sim.time - memory["start"]
         wave = np.sin(2.0 * np.pi * memory["frequency"] * t + memory["phase"]) * min(t, 1.0)
         # It never drifts off: its mean place is where it began.
-        back = 0.1 - float(sim.bodies["paddle"].position[0])
+        back = 0.04 - float(sim.bodies["paddle"].position[0])
         memory["paddle"] = float(np.clip(memory["strength"] * wave + 0.5 * back, -1.0, 1.0))
         with sim.edit() as edit:
             edit.bodies["paddle"].velocity = (memory["paddle"], 0.0)
