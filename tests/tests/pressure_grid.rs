@@ -463,7 +463,7 @@ fn a_thin_body_dams_water() {
         let mut forces = Vec::new();
         run(&mut solver, 90, |solver| forces.push(solver.bodies()[0].fluid_force.x));
         let across = of_phase(&solver, Phase::Liquid).filter(|&row| f64::from(solver.positions()[row].x) > dam).count();
-        let force = mean_of(forces.into_iter()) / (0.5 * 1000.0 * 9.81);
+        let force = mean_of(forces) / (0.5 * 1000.0 * 9.81);
         bars("a static body as a dam", |bars| {
             bars.at_most(&format!("{thickness} dx thick: particles across"), across as f64, 0.0);
             bars.within(&format!("{thickness} dx thick: force"), force, 0.96, 1.03);
