@@ -11,6 +11,11 @@ pub fn mix(from: Rgb, to: Rgb, t: f32) -> Rgb {
     })
 }
 
+/// The colour as SVG and style sheets write it.
+pub(super) fn css([red, green, blue]: Rgb) -> String {
+    format!("#{red:02x}{green:02x}{blue:02x}")
+}
+
 /// Relative luminance, 0 black to 1 white (Rec. 709 weights on linear light).
 pub fn luminance(color: Rgb) -> f32 {
     let [red, green, blue] = color.map(|channel| linear(f32::from(channel) / 255.0));

@@ -1,4 +1,4 @@
-//! What shapes are drawn on: the pixels of a picture, or a sheet of vectors.
+//! The surface that shapes are drawn on: the pixels of a picture, or a sheet of vectors.
 
 use tiny_skia::{Path, PathBuilder, Rect};
 

@@ -6,7 +6,7 @@ use pdf_writer::types::{LineCapStyle, LineJoinStyle};
 use pdf_writer::{Content, Finish as _, Pdf, Rect, Ref};
 use tiny_skia::{Path, PathSegment};
 
-use super::color::{self, Rgb};
+use super::color::{self, Rgb, css};
 use super::paper::Paper;
 
 /// Points of print in a pixel: 96 pixels and 72 points are an inch.
@@ -146,10 +146,6 @@ impl Paper for Sheet {
             _ => self.push(Mark::Discs { centers: vec![center], radius, color }),
         }
     }
-}
-
-fn css([red, green, blue]: Rgb) -> String {
-    format!("#{red:02x}{green:02x}{blue:02x}")
 }
 
 fn svg_mark(text: &mut String, mark: &Mark) {

@@ -5,7 +5,7 @@ use unipbd_core::phase::Phase;
 use unipbd_core::rigid::Body;
 
 use super::motion::Motion;
-use crate::render::color::{self, ColorMap, Rgb};
+use crate::render::color::{self, ColorMap, css};
 use crate::render::fluids::material_colors;
 use crate::render::options::RenderOptions;
 use crate::render::theme::Theme;
@@ -79,8 +79,4 @@ fn body_json(body: &Body, index: usize, theme: &Theme) -> Value {
         "color": css(fill),
         "edge": css(color::mix(fill, [255; 3], 0.45)),
     })
-}
-
-fn css([red, green, blue]: Rgb) -> String {
-    format!("#{red:02x}{green:02x}{blue:02x}")
 }
