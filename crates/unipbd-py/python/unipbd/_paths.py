@@ -2,10 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import re
-from typing import Any
+from collections.abc import Callable, Mapping
+from pathlib import Path
+from typing import Any, TypeVar
 
-from ._toml import RecipeError
+from ._toml import RecipeError, read
+
+T = TypeVar("T")
 
 
 def split(path: str) -> list[str]:
@@ -58,3 +63,19 @@ def _there(place: Any) -> str:
     if isinstance(place, dict):
         return f"there are {', '.join(key for key in place)}"
     return "it is no table"
+
+
+def load(
+    path: str | os.PathLike[str],
+    changes: Mapping[str, Any] | None,
+    make: Callable[[dict[str, Any], Path], T],
+) -> T:
+    """What `make` makes of a file and its folder; `changes` replace values by their paths before. Raises `RecipeError`
+    with the line, or `OSError`."""
+    tables, text = read(path)
+    try:
+        for key, value in (changes or {}).items():
+            assign(tables, key, value, key)
+        return make(tables, Path(path).parent)
+    except RecipeError as error:
+        raise error.placed(os.fspath(path), text) from None

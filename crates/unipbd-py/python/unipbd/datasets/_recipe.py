@@ -12,9 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from .._arrays import plain
-from .._paths import assign
+from .._paths import load
 from .._scene_table import read_scene
-from .._toml import RecipeError, known, read
+from .._toml import RecipeError, known
 from ._fields import check_force, check_start
 
 FORMATS = ("lagrangebench", "gns", "npz")
@@ -75,13 +75,7 @@ class Recipe:
     def load(cls, path: str | os.PathLike[str], changes: Mapping[str, Any] | None = None) -> Recipe:
         """Reads a recipe file; `changes` replace values by their paths. Raises `RecipeError` with the line,
         `SceneError` for its scene, or `OSError`."""
-        tables, text = read(path)
-        try:
-            for key, value in (changes or {}).items():
-                assign(tables, key, value, key)
-            return cls.from_dict(tables, Path(path).parent)
-        except RecipeError as error:
-            raise error.placed(os.fspath(path), text) from None
+        return load(path, changes, cls.from_dict)
 
     @classmethod
     def from_dict(cls, tables: Mapping[str, Any], folder: str | os.PathLike[str] = ".") -> Recipe:

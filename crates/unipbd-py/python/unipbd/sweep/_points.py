@@ -14,9 +14,9 @@ import numpy as np
 
 from .._arrays import plain
 from .._distribution import Distribution
-from .._paths import assign
+from .._paths import assign, load
 from .._scene_table import read_scene
-from .._toml import RecipeError, known, read
+from .._toml import RecipeError, known
 
 _KEYS = "name description scene seed repeats draws sampling grid list random reduce logs".split()
 REDUCTIONS = ("max", "min", "mean", "last")
@@ -56,13 +56,7 @@ class Sweep:
     def load(cls, path: str | os.PathLike[str], changes: Mapping[str, Any] | None = None) -> Sweep:
         """Reads a sweep file; `changes` replace values by their paths. Raises `RecipeError` with the line, `SceneError`
         for its scene, or `OSError`."""
-        tables, text = read(path)
-        try:
-            for key, value in (changes or {}).items():
-                assign(tables, key, value, key)
-            return cls.from_dict(tables, Path(path).parent)
-        except RecipeError as error:
-            raise error.placed(os.fspath(path), text) from None
+        return load(path, changes, cls.from_dict)
 
     @classmethod
     def from_dict(cls, tables: Mapping[str, Any], folder: str | os.PathLike[str] = ".") -> Sweep:
