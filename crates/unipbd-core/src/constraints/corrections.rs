@@ -107,7 +107,11 @@ impl Corrections {
     }
 
     pub(crate) fn memory_bytes(&self) -> usize {
-        held(&self.displacement) + held(&self.shift) + held(&self.load) + held(&self.wall_load)
+        held(&self.displacement)
+            + held(&self.shift)
+            + held(&self.load)
+            + held(&self.wall_load)
+            + held(&self.outline_load)
     }
 
     /// Adds a displacement to one row.
