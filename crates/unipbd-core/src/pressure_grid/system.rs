@@ -267,7 +267,7 @@ impl System {
     ) {
         // Straight steps along curved paths compress the fluid: the velocities that end the substep at the density of its start
         // make the step one of second order, as in the method of Verlet.
-        let (depth, curving) = (&self.depth, 0.5 * dt / lattice.cell);
+        let (depth, curving) = (&self.depth, dt / lattice.cell);
         let (open, bare, masked) = (&self.open, &self.bare, &self.masked);
         let flow = Flow { u: &self.along_x, v: &self.along_y, stride: lattice.stride() };
         spans.each2(&mut self.divergence, &mut self.excess, parallelism, |first, divergence, excess| {

@@ -36,8 +36,6 @@ pub struct Density<K = WendlandC2> {
     /// Repulsion strength by row.
     strength: Vec<Real>,
     records: Records,
-    /// Part of the displacements that velocities follow in this substep.
-    velocity_share: Real,
 }
 
 /// Kernel sums over the neighbours of each row, the row itself left out.
@@ -78,7 +76,6 @@ impl<K: Shape> Density<K> {
             wall_gradient: Vec::new(),
             strength: Vec::new(),
             records: Records::default(),
-            velocity_share: 1.0,
         }
     }
 

@@ -1,7 +1,6 @@
 //! The three passes of one density iteration.
 
 use super::places::Points;
-use super::settings::MOST_SHARE;
 use super::{Density, DensityMaterial};
 use crate::constraints::{Corrections, Substep};
 use crate::kernel::Shape;
@@ -15,12 +14,6 @@ use crate::simd::Level;
 use crate::simd::space::{Open, Space, Wrapped};
 use crate::walls::{Coverage, Moment};
 use std::ops::Range;
-
-/// How far the fastest dense particle goes in this substep [m].
-fn fastest_way(now: Substep<'_>) -> Real {
-    let velocities = now.particles.velocities();
-    now.parallelism.max(now.particles.listed(), |i| velocities[i].length_squared()).sqrt() * now.dt
-}
 
 impl<K: Shape> Density<K> {
     /// Pass 1: sums of the kernel, its gradient and the response of the neighbours.
@@ -89,7 +82,9 @@ impl<K: Shape> Density<K> {
         let (sums, walls, errors) = (&self.sums.gradient, &self.wall_gradient, &self.error);
         let (materials, material_of) = (&self.settings.materials, now.particles.materials());
         let (volume, inverse_masses) = (self.settings.volume, now.particles.inverse_masses());
-        let part = smaller(fastest_way(now) / self.settings.whole_shift, 1.0);
+        let velocities = now.particles.velocities();
+        let fastest = now.parallelism.max(errors.len(), |i| velocities[i].length_squared()).sqrt();
+        let part = smaller(fastest * now.dt / self.settings.whole_shift, 1.0);
         now.parallelism.update(&mut out.shifts_mut()[..errors.len()], |i, shift| {
             if inverse_masses[i] > 0.0 {
                 let strength = materials[usize::from(material_of[i])].shift(errors[i]) * part;
@@ -126,10 +121,11 @@ impl<K: Shape> Density<K> {
     }
 
     /// Lets velocities follow a part of the displacements alone.
-    fn share(&mut self, now: Substep<'_>, out: &mut Corrections) {
-        let Some(share_per_way) = self.settings.share_per_way else { return };
-        let share = smaller(fastest_way(now) * share_per_way, MOST_SHARE);
-        self.velocity_share = share;
+    fn share(&self, now: Substep<'_>, out: &mut Corrections) {
+        let share = self.settings.velocity_share;
+        if share == 1.0 {
+            return;
+        }
         let rows = now.particles.listed();
         let (displacements, shifts) = out.both_mut();
         now.parallelism.chunks2(&mut displacements[..rows], &mut shifts[..rows], |_, displacements, shifts| {
@@ -143,7 +139,7 @@ impl<K: Shape> Density<K> {
     /// The forces of the same multipliers on the samples of bodies. Run after [`correct`](Self::correct).
     pub(super) fn load_bodies(&self, now: Substep<'_>, out: &mut Corrections) {
         let (sums, volume, phases) = (&self.sums.gradient, self.settings.volume, now.particles.phases());
-        let share = self.velocity_share * self.settings.step_unit;
+        let share = self.settings.velocity_share * self.settings.step_unit;
         now.parallelism.update(out.loads_mut(), |i, load| {
             if phases[i] == Phase::Rigid {
                 *load -= sums[i] * (volume * share);
@@ -158,7 +154,7 @@ impl<K: Shape> Density<K> {
         }
         let positions = self.places.iteration(now).world.gradient;
         let (steps, inverse_masses) = (&self.step, now.particles.inverse_masses());
-        let share = self.velocity_share * self.settings.step_unit;
+        let share = self.settings.velocity_share * self.settings.step_unit;
         for (row, &position) in positions.iter().enumerate() {
             if steps[row] != 0.0 && inverse_masses[row] > 0.0 {
                 now.walls.shares(position, &self.coverage, |wall, slope| {
@@ -176,7 +172,7 @@ impl<K: Shape> Density<K> {
         let points = self.places.iteration(now).world;
         let moment = if points.other_gradient().is_some() { Moment::Start } else { Moment::End };
         let (steps, inverse_masses) = (&self.step, now.particles.inverse_masses());
-        let share = self.velocity_share * self.settings.step_unit;
+        let share = self.settings.velocity_share * self.settings.step_unit;
         // Chunk by chunk: most outlines are far from all points of one.
         for (number, points) in points.gradient[..self.wall_gradient.len()].chunks(CHUNK_ROWS).enumerate() {
             now.outlines.each_seen(points, moment, |k, near| {
