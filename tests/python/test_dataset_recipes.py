@@ -53,6 +53,18 @@ def test_walls_are_where_the_fluid_would_go_on_and_a_lid_goes_round() -> None:
     assert apart.min() == pytest.approx(0.02, rel=1e-6)
 
 
+def test_walls_are_half_a_spacing_behind_surfaces_that_the_lattice_does_not_meet() -> None:
+    scene = up.Scene.from_dict({"spacing": 0.06, "body": [{"radius": 0.1, "position": [1, 1]}], "tank": [{"min": [0, 0], "max": [2.0, 1.5]}],
+                                "obstacle": [{"min": [0.5, 0], "max": [0.9, 0.5]}]})
+    walls = datasets.wall_particles(scene).positions
+    outer = walls[(walls < 0).any(axis=1) | (walls > (2.0, 1.5)).any(axis=1)]
+    assert np.ptp(outer[:, 0]) == pytest.approx(2.06) and np.ptp(outer[:, 1]) == pytest.approx(1.56)
+    floor = np.sort(outer[outer[:, 1] < 0, 0])
+    assert np.diff(floor).max() < 1.1 * 0.06 and np.diff(floor).min() > 0.9 * 0.06 - 1e-9
+    inner = walls[(walls > 0).all(axis=1) & (walls < (2, 1.5)).all(axis=1)]
+    assert inner[:, 0].min() == pytest.approx(0.53, abs=0.005) and inner[:, 0].max() == pytest.approx(0.87, abs=0.005)
+
+
 def test_walls_of_a_simulation_are_particles_on_request(sim: up.Simulation) -> None:
     one, two = sim.wall_particles(), sim.wall_particles(layers=2)
     assert len(one) == 2 * (20 + 30) + 4 and len(two) == len(one) + 2 * (22 + 32) + 4

@@ -72,5 +72,5 @@ def size_text(count: float) -> str:
 def time_text(seconds: float) -> str:
     """A time."""
     if seconds < 120.0:
-        return f"{seconds:.0f} s"
+        return f"{seconds:.1f} s" if seconds < 10.0 else f"{seconds:.0f} s"
     return f"{seconds / 60.0:.0f} min" if seconds < 7200.0 else f"{seconds / 3600.0:.1f} h"

@@ -161,8 +161,10 @@ def _manifest(parts: Parts, folders: list[str]) -> dict[str, Any]:
         for reason in record["refused"]:
             short = reason.split(":")[0]
             reasons[short] = reasons.get(short, 0) + 1
+    versions = {"h5py": _lagrangebench.h5py().__version__} if "lagrangebench" in parts.recipe.formats else {}
     return {
         "unipbd": _native.__version__,
+        **versions,
         "numpy": np.__version__,
         "python": platform.python_version(),
         "recipe": parts.recipe.to_dict(),
