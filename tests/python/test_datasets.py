@@ -110,6 +110,18 @@ def test_refused_runs_are_drawn_again_and_counted(tmp_path: Path) -> None:
         assert file["values"][:, :, list(file["columns"]).index("speed_max")].max() <= 4.5
 
 
+def test_runs_that_warn_are_drawn_again_unless_the_warning_is_to_be_ignored(tmp_path: Path) -> None:
+    scene = {**POOL["scene"], "solver": {"max_substeps": 3}}
+    values = {"scene": scene, "vary": [{"key": "block.0.velocity.0", "uniform": [0.0, 9.0]}], "scatter": []}
+    datasets.generate(small(**values), tmp_path / "strict", jobs=1)
+    manifest = json.loads((tmp_path / "strict" / "manifest.json").read_text())
+    reasons = [reason for one in manifest["trajectories"] for reason in one["refused"]]
+    assert manifest["refused"] == {"warning": len(reasons)} and "substeps capped at 3" in reasons[0]
+    assert all(one["attempt"] == len(one["refused"]) for one in manifest["trajectories"])
+    datasets.generate(small(**values, filter={"ignore": ["substeps capped"]}), tmp_path / "lenient", jobs=1)
+    assert json.loads((tmp_path / "lenient" / "manifest.json").read_text())["refused"] == {}
+
+
 def test_where_every_draw_is_refused_the_reason_is_said(tmp_path: Path) -> None:
     with pytest.raises(up.UnipbdError, match="all 2 draws were refused, the last one: speed: speed_max"):
         datasets.generate(small(filter={"speed": 1e-9}, attempts=2), tmp_path, jobs=1)
