@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from .._options import EXIT_CODES, add_running, guarded, show, size_text, time_text
+from .._options import EXIT_CODES, Line, add_running, guarded, size_text, time_text
 from .._work import processes, share
 from ._generate import Progress, estimate, generate
 from ._recipe import Recipe
@@ -56,10 +56,9 @@ def _generate(given: Sequence[str]) -> int:
               f"({time_text(cost.seconds)} of one core for all)", file=sys.stderr)
     if options.dry_run:
         return 0
-    progress = None if options.quiet else _show
+    line = Line()
+    progress = None if options.quiet else lambda found: line.show(_text(found), found.done == found.total)
     made = generate(recipe, options.output, options.shard, options.jobs, progress, options.keep_parts)
-    if not options.quiet:
-        print(file=sys.stderr)
     for folder in made:
         size = sum(path.stat().st_size for path in folder.iterdir())
         print(f"{folder}: {size_text(size)}")
@@ -70,11 +69,11 @@ def _generate(given: Sequence[str]) -> int:
     return 0
 
 
-def _show(progress: Progress) -> None:
+def _text(progress: Progress) -> str:
     left = "" if progress.remaining is None else f", {time_text(progress.remaining)} left"
     refused = f", {progress.refused} refused" if progress.refused else ""
     part = f" and {progress.part:.1%} of the next" if progress.part else ""
-    show(f"{progress.done}/{progress.total} trajectories{part}{refused}{left}")
+    return f"{progress.done}/{progress.total} trajectories{part}{refused}{left}"
 
 
 def _report(given: Sequence[str]) -> int:
