@@ -117,19 +117,44 @@ def test_grids_points_and_probes_show_the_particles() -> None:
 def test_a_world_that_diverges_ends_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     envs = BatchEnv("pour", 3)
     envs.reset(seed=0)
-    still, step = np.zeros((3, 1), dtype=np.float32), envs.batch.step
+    still, begin = np.zeros((3, 1), dtype=np.float32), envs.batch.begin
 
-    def diverge(worlds: Any) -> None:
-        step(worlds=[number for number in worlds if number != 1])
-        raise up.SolverError("the speed is not finite", world=1)
+    def diverge() -> None:
+        raise up.SolverError("the speed is not finite")
 
-    monkeypatch.setattr(envs.batch, "step", diverge)
+    monkeypatch.setattr(envs.batch, "begin", lambda number: diverge if number == 1 else begin(number))
     _, rewards, ended, late, infos = envs.step(still)
     assert ended.tolist() == [False, True, False] and not late.any() and rewards[1] == 0.0
     assert infos["diverged"].tolist() == [False, True, False]
-    monkeypatch.setattr(envs.batch, "step", step)
+    monkeypatch.setattr(envs.batch, "begin", begin)
     seen, _, ended, _, _ = envs.step(still)
     assert not ended.any() and seen[1].any() and envs._steps.tolist() == [2, 0, 2]
+
+
+def test_an_action_that_fails_leaves_no_world_under_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    envs = BatchEnv("pour", 3, threads=2)
+    envs.reset(seed=0)
+    act = envs.task.act
+
+    def fail(sim: Any, memory: Any, action: Any) -> None:
+        if sim is envs.batch[2]:
+            raise KeyError("no such lever")
+        act(sim, memory, action)
+
+    monkeypatch.setattr(envs.task, "act", fail)
+    with pytest.raises(KeyError, match="lever"):
+        envs.step(np.zeros((3, 1), dtype=np.float32))
+    monkeypatch.setattr(envs.task, "act", act)
+    envs.reset(seed=0)
+    seen, *_ = envs.step(np.zeros((3, 1), dtype=np.float32))
+    np.testing.assert_array_equal(seen[0], fresh_step("pour"))
+
+
+def fresh_step(task: str) -> Any:
+    """What a single environment shows after a first step without action."""
+    env = TaskEnv(task)
+    env.reset(seed=0)
+    return env.step(np.zeros(env.action_space.shape, dtype=np.float32))[0]
 
 
 def test_pictures_and_wrong_arguments() -> None:
