@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import os
 import subprocess
 import sys
 import time
@@ -17,6 +18,7 @@ from kills import killed
 
 import unipbd as up
 from unipbd import sweep
+from unipbd._work import run_all
 
 pandas = pytest.importorskip("pandas")
 
@@ -135,6 +137,21 @@ def test_mistakes_are_named(values: dict[str, Any], key: str, message: str) -> N
     with pytest.raises(sweep.RecipeError) as caught:
         made(**values)
     assert caught.value.key == key and message in str(caught.value)
+
+
+def end_at_three(number: int) -> int:
+    return os._exit(9) if number == 3 else number
+
+
+def test_a_worker_that_is_killed_is_said_and_a_missing_package_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pytest.raises(up.UnipbdError, match="ran out of memory; the same call goes on"):
+        list(run_all(end_at_three, range(6), 2))
+    sweep.run(made(grid=[], list=[]), tmp_path, jobs=1)
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with pytest.raises(up.UnipbdError, match=r'pip install "unipbd\[data\]"'):
+        sweep.write_table(tmp_path, tmp_path / "results.parquet")
 
 
 def test_a_diagnostic_that_is_not_there_is_named(tmp_path: Path) -> None:

@@ -73,6 +73,30 @@ def compare(expected: tuple[Any, ...], found: tuple[Any, ...]) -> None:
         assert one is None and other is None or np.array_equal(one, other)
 
 
+def test_wrappers_of_gymnasium_take_a_batch_as_they_take_their_own() -> None:
+    """Statistics of episodes, flat and normalized observations, normalized rewards, infos as a list."""
+
+    def wrapped(envs: Any) -> Any:
+        wrappers = gymnasium.wrappers.vector
+        envs = wrappers.RecordEpisodeStatistics(envs)
+        envs = wrappers.NormalizeObservation(wrappers.FlattenObservation(envs))
+        return wrappers.DictInfoToList(wrappers.NormalizeReward(wrappers.RescaleAction(envs, -2.0, 2.0)))
+
+    def single() -> Any:
+        return gymnasium.wrappers.TimeLimit(TaskEnv("pour", observation="grid"), 6)
+
+    theirs = wrapped(vector.SyncVectorEnv([single] * 2))
+    ours = wrapped(BatchEnv("pour", 2, observation="grid", max_episode_steps=6))
+    np.testing.assert_array_equal(theirs.reset(seed=3)[0], ours.reset(seed=3)[0])
+    lengths = []
+    for action in actions(ours, 16):
+        expected, found = theirs.step(action), ours.step(action)
+        for one, other in zip(expected[:-1], found[:-1], strict=True):
+            np.testing.assert_array_equal(one, other)
+        lengths += [info["episode"]["l"] for info in found[-1] if "episode" in info]
+    assert lengths and set(lengths) == {6}
+
+
 def test_make_vec_makes_them_and_seeds_repeat() -> None:
     def play(seed: Any) -> Any:
         envs = gymnasium.make_vec(IDS["stir"], num_envs=2, vectorization_mode="vector_entry_point")

@@ -7,6 +7,7 @@ import os
 import threading
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
 from multiprocessing import get_context, parent_process
 from pathlib import Path
 from typing import Any, TypeVar
@@ -59,6 +60,10 @@ def run_all(work: Callable[[int], Result], parts: Sequence[int], jobs: int) -> I
         try:
             for future in as_completed(futures):
                 yield future.result()
+        except BrokenProcessPool:
+            raise UnipbdError(
+                "a process ended in the middle of its work: it was killed, or ran out of memory; the same call goes on "
+                "with what is left, with fewer jobs in less memory") from None
         except BaseException:
             pool.shutdown(cancel_futures=True)
             raise
