@@ -16,10 +16,9 @@ let playing = true;
 /** Whether the scene is another one: where a slider makes it start anew, controls stay as they are. */
 let fresh = true;
 
-let lowest = Infinity;
 const energy = new Plot(element("energy"), element("energy-label"), "J", [
   { name: "kinetic", color: "#6fb1f0", value: (numbers) => numbers.kinetic_energy },
-  { name: "total", color: "#f0b86f", value: (numbers) => numbers.energy - (lowest = Math.min(lowest, numbers.potential_energy)) },
+  { name: "potential above its lowest", color: "#f0b86f", value: (numbers) => numbers.potential_energy, relative: true },
 ]);
 const compression = new Plot(element("compression"), element("compression-label"), "%", [
   { name: "mean compression", color: "#8fd694", value: (numbers) => 100 * numbers.density_error_mean },
@@ -37,7 +36,6 @@ const arrivals = {
     element("notice").textContent = "";
     editor.clear();
     stage.begin(scene);
-    lowest = Infinity;
     [energy, compression].forEach((plot) => plot.clear());
     if (!fresh) return;
     fresh = false;

@@ -10,7 +10,7 @@ export class Plot {
   #lines;
   #rows = [];
 
-  /** `lines`: name, colour and value of each line, taken from the diagnostics; `unit` of all. */
+  /** `lines`: name, colour and value of each line, taken from the diagnostics, `relative` to its lowest; `unit` of all. */
   constructor(canvas, label, unit, lines) {
     this.#canvas = canvas;
     this.#label = label;
@@ -35,7 +35,9 @@ export class Plot {
     Object.assign(this.#canvas, { width: width * ratio, height: height * ratio });
     const pen = this.#canvas.getContext("2d");
     pen.scale(ratio, ratio);
-    const all = this.#rows.flat();
+    const lowest = this.#lines.map(({ relative }, line) => (relative ? Math.min(...this.#rows.map((row) => row[line])) : 0));
+    const rows = this.#rows.map((row) => row.map((value, line) => value - lowest[line]));
+    const all = rows.flat();
     const low = Math.min(0, ...all);
     const high = Math.max(...all, low + 1e-9);
     const y = (value) => height - 2 - (value - low) / (high - low) * (height - 4);
@@ -45,10 +47,10 @@ export class Plot {
       pen.strokeStyle = color;
       pen.lineWidth = 1.5;
       pen.beginPath();
-      this.#rows.forEach((row, k) => pen.lineTo(k / (LENGTH - 1) * width, y(row[line])));
+      rows.forEach((row, k) => pen.lineTo(k / (LENGTH - 1) * width, y(row[line])));
       pen.stroke();
     });
-    const last = this.#rows.at(-1);
+    const last = rows.at(-1);
     this.#label.replaceChildren(...this.#lines.map(({ name, color }, line) => {
       const part = document.createElement("span");
       part.style.color = color;

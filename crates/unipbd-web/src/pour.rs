@@ -9,7 +9,7 @@ use unipbd_core::{Edit, Solver, Vector64};
 /// Most particles that one call adds.
 const MOST: f64 = 4096.0;
 /// Least distance to what is there [spacings].
-const CLEARANCE: f64 = 0.85;
+const CLEARANCE: f64 = 0.97;
 
 /// Fills the free places of a lattice within a disc; returns the number of particles.
 pub fn disc(solver: &mut Solver, material: usize, center: Vector64, radius: f64) -> Result<u32, String> {

@@ -171,8 +171,9 @@ test("a mistake in a pasted scene is shown at its line", { skip }, async () => {
 
 test("it fits a phone, and a finger pours", { skip }, async () => {
   await page.setViewport({ width: 390, height: 844, deviceScaleFactor: 2, isMobile: true, hasTouch: true });
+  await page.reload();
+  await started();
   await choose("dam_break");
-  await page.evaluate(() => { document.getElementById("source").open = false; });
   const wide = await page.evaluate(() => document.documentElement.scrollWidth);
   assert.ok(wide <= 390, `${wide} wide`);
   const box = await (await page.$("#stage")).boundingBox();
