@@ -57,11 +57,13 @@ replay() {
 
 # The WebAssembly module in Node and in a headless browser, beside native runs; the npm package.
 web() {
-    local out="${CARGO_TARGET_DIR:-$PWD/target}"
+    local out="${CARGO_TARGET_DIR:-$PWD/target}" profile=debug
     scripts/web.sh || return 1
-    cargo build --quiet -p unipbd-web --example hashes || return 1
+    # Times are compared with those of a build for release in the full tier alone.
+    cargo build --quiet -p unipbd-web --example hashes ${full:+--release} || return 1
+    [ -z "$full" ] || profile=release
     npm --prefix tests/browser ci --silent --no-audit --no-fund || return 1
-    UNIPBD_WEB="$out" UNIPBD_HASHES="$out/debug/examples/hashes" npm --prefix tests/browser run web --silent
+    UNIPBD_WEB="$out" UNIPBD_HASHES="$out/$profile/examples/hashes" npm --prefix tests/browser run web --silent
 }
 
 # What a release consists of, built here: archive of the command, crates, wheel and source distribution, checked.

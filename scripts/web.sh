@@ -62,7 +62,7 @@ lacks=$(missing)
 [ -z "$lacks" ] || { echo "$lacks" >&2; exit 1; }
 (
     installed || use_fetched
-    # Less is inlined than for a machine: a fifth off the download, and hardly slower.
+    # Less is inlined than for a machine: it is to be downloaded.
     export RUSTFLAGS="${RUSTFLAGS:-} -C target-feature=+simd128 -C llvm-args=-inline-threshold=50"
     cargo build --quiet --locked --profile web -p unipbd-web --target $target --target-dir "$out/wasm" "${apart[@]}"
 )

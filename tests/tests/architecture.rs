@@ -189,7 +189,11 @@ fn the_core_takes_sines_and_exponentials_from_one_library() {
         let code = code(&path);
         assert!(!code.contains("::from_angle("), "{}: math::direction is the unit vector at an angle", path.display());
         for function in functions.split_whitespace() {
-            assert!(!code.contains(&format!(".{function}(")), "{} calls {function} of a number, not of libm", path.display());
+            assert!(
+                !code.contains(&format!(".{function}(")),
+                "{} calls {function} of a number, not of libm",
+                path.display()
+            );
         }
     }
 }

@@ -39,6 +39,7 @@ const arrivals = {
     [energy, compression].forEach((plot) => plot.clear());
     if (!fresh) return;
     fresh = false;
+    frame = null;
     document.title = `${scene.name || "scene"} - unipbd`;
     putSliders(element("sliders"), slidersOf(schema, scene.scene), (settings) => send("change", { settings }));
     const pourable = scene.materials.map(({ name, phase }, number) => ({ name, phase, number }));
@@ -79,7 +80,7 @@ const arrivals = {
   },
 };
 worker.onmessage = ({ data }) => arrivals[data.type](data);
-worker.onerror = (event) => arrivals.failed({ text: `The solver stopped: ${event.message}. Choose a scene to go on.` });
+worker.onerror = (event) => arrivals.failed({ text: `The page's worker failed: ${event.message}` });
 
 async function choose(file) {
   const response = await fetch(`scenes/${file}.toml`);
@@ -159,9 +160,12 @@ canvas.addEventListener("pointermove", (event) => {
 });
 for (const end of ["pointerup", "pointercancel"]) canvas.addEventListener(end, () => send("lift"));
 
-// For tests: the hash of the state at a frame.
+// For tests: what is shown, and the hash of the state at a frame.
 let reaching = null;
 window.unipbd = {
+  get frame() {
+    return frame?.number ?? null;
+  },
   get particles() {
     return frame?.materials.length ?? 0;
   },

@@ -122,8 +122,15 @@ function guard(work) {
   } catch (error) {
     playing = false;
     if (error.problems) say("mistakes", { text: error.message, problems: error.problems });
-    else say("failed", { text: `${error.message}` });
+    else restart(error);
   }
+}
+
+/** The module is of no use after a fault of its own: a fresh one takes its place. */
+async function restart(error) {
+  run = null;
+  say("failed", { text: `The solver stopped: ${error.message}. Start anew or choose another scene.` });
+  unipbd = await load();
 }
 
 onmessage = ({ data }) => {

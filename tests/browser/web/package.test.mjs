@@ -52,6 +52,6 @@ try { run.step(); } catch (error) { if (error instanceof SceneError) console.log
 run.frame = 1;
 `);
   const compiler = fileURLToPath(new URL("../node_modules/typescript/bin/tsc", import.meta.url));
-  const options = ["--noEmit", "--strict", "--target", "es2022", "--module", "nodenext", "--lib", "es2022,dom", "--types", ""];
+  const options = ["--noEmit", "--strict", "--target", "es2022", "--module", "nodenext", "--lib", "es2022,dom"];
   run(process.execPath, compiler, ...options, "use.ts");
 });

@@ -49,12 +49,12 @@ after(async () => {
   server?.close();
 });
 
-const started = () => page.waitForFunction(() => document.getElementById("time").textContent !== "");
+const started = () => page.waitForFunction(() => document.title.includes(" - ") && window.unipbd.frame !== null);
 const text = (id) => page.$eval(`#${id}`, (element) => element.textContent);
 
 async function choose(name) {
   await page.evaluate((name) => {
-    document.getElementById("time").textContent = "";
+    document.title = "";
     const list = document.getElementById("scene");
     list.value = name;
     list.dispatchEvent(new Event("change"));
@@ -162,7 +162,7 @@ test("a mistake in a pasted scene is shown at its line", { skip }, async () => {
   const selected = await page.$eval("#text", (one) => one.value.slice(one.selectionStart, one.selectionEnd));
   assert.equal(selected, "densty");
   await picture("mistake");
-  await page.evaluate(() => { document.getElementById("time").textContent = ""; });
+  await page.evaluate(() => { document.title = ""; });
   await paste(scene("dam_break"));
   await started();
   assert.equal(await text("mistakes"), "");
