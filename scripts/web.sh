@@ -8,7 +8,8 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 target=wasm32-unknown-unknown
-out=$(realpath -m "${CARGO_TARGET_DIR:-target}")
+out=${CARGO_TARGET_DIR:-target}
+case $out in /*) ;; *) out=$PWD/$out ;; esac
 root=$out/wasm-toolchain/root
 apart=()
 
@@ -64,7 +65,7 @@ lacks=$(missing)
     installed || use_fetched
     # Less is inlined than for a machine: it is to be downloaded.
     export RUSTFLAGS="${RUSTFLAGS:-} -C target-feature=+simd128 -C llvm-args=-inline-threshold=50"
-    cargo build --quiet --locked --profile web -p unipbd-web --target $target --target-dir "$out/wasm" "${apart[@]}"
+    cargo build --quiet --locked --profile web -p unipbd-web --target $target --target-dir "$out/wasm" ${apart[@]+"${apart[@]}"}
 )
 module=$out/wasm/$target/web/unipbd_web.wasm
 
