@@ -64,7 +64,7 @@ lacks=$(missing)
 (
     installed || use_fetched
     # Less is inlined than for a machine: it is to be downloaded.
-    export RUSTFLAGS="${RUSTFLAGS:-} -C target-feature=+simd128 -C llvm-args=-inline-threshold=50"
+    export RUSTFLAGS="${RUSTFLAGS:-} -C target-feature=+simd128 -C llvm-args=-inline-threshold=25"
     cargo build --quiet --locked --profile web -p unipbd-web --target $target --target-dir "$out/wasm" ${apart[@]+"${apart[@]}"}
 )
 module=$out/wasm/$target/web/unipbd_web.wasm
