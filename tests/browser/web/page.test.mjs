@@ -83,15 +83,21 @@ test(`five scenes have the hashes of native runs after ${FRAMES} frames`, { skip
   assert.deepEqual(faults, []);
 });
 
-const blue = () => page.evaluate(() => {
+/** How many pixels have a colour, and where their middle is, as parts of width and height. */
+const seen = (low, high) => page.evaluate((low, high) => {
   const canvas = document.getElementById("stage");
   const { data, width, height } = canvas.getContext("2d").getImageData(0, 0, canvas.width, canvas.height);
-  let [count, x] = [0, 0];
+  let [count, x, y] = [0, 0, 0];
   for (let k = 0; k < width * height; k++) {
-    if (data[4 * k + 2] > 150 && data[4 * k] < 100) { count++; x += (k % width) / width; }
+    if ([0, 1, 2].some((part) => data[4 * k + part] < low[part] || data[4 * k + part] > high[part])) continue;
+    count++;
+    x += (k % width) / width;
+    y += Math.floor(k / width) / height;
   }
-  return { count, x: x / count };
-});
+  return { count, x: x / count, y: y / count };
+}, low, high);
+const blue = () => seen([0, 0, 150], [100, 255, 255]);
+const orange = () => seen([200, 140, 0], [255, 190, 100]);
 
 test("the picture shows water that runs, and pauses", { skip }, async () => {
   await choose("dam_break");
@@ -141,6 +147,18 @@ test("colours, sliders and the pointer act on the run", { skip }, async () => {
   await picture("poured");
   const after = await blue();
   assert.ok(after.count > before.count, `${before.count} ${after.count}`);
+
+  await choose("floating_bodies");
+  const float = await orange();
+  const at = (x, y) => [box.x + x * box.width, box.y + y * box.height];
+  await page.mouse.move(...at(float.x, float.y));
+  await page.mouse.down();
+  await page.mouse.move(...at(float.x + 0.2, float.y - 0.2), { steps: 5 });
+  await page.waitForFunction(() => parseFloat(document.getElementById("time").textContent) > 1.2);
+  const lifted = await orange();
+  await picture("dragged");
+  await page.mouse.up();
+  assert.ok(Math.hypot(lifted.x - float.x - 0.2, lifted.y - float.y + 0.2) < 0.05, JSON.stringify([float, lifted]));
   assert.deepEqual(faults, []);
 });
 
