@@ -13,9 +13,14 @@ PATIENCE = 120.0
 
 
 def killed(arguments: list[object], enough: Callable[[], bool]) -> None:
-    """Runs `unipbd` with these arguments and kills it as soon as enough is done. Returns when its workers are gone: they
-    hold the other end of its output."""
-    run = subprocess.Popen([*COMMAND, *map(str, arguments)], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
+    """Runs `unipbd` with these arguments and kills it as soon as enough is done."""
+    kill_when([*COMMAND, *map(str, arguments)], enough)
+
+
+def kill_when(words: list[str], enough: Callable[[], bool]) -> None:
+    """Runs a command and kills it as soon as enough is done. Returns when its workers are gone: they hold the other end
+    of its output."""
+    run = subprocess.Popen(words, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True)
     started = time.monotonic()
     while not enough():
         assert run.poll() is None, f"it ended by itself: {run.communicate()[0]}"

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from conftest import ROOT
-from small_dataset import RECIPES, lagrangebench
+from small_dataset import RECIPES, lagrangebench, small
 
 import unipbd as up
 from unipbd import datasets
@@ -70,6 +70,10 @@ def test_walls_of_a_simulation_are_particles_on_request(sim: up.Simulation) -> N
     assert len(one) == 2 * (20 + 30) + 4 and len(two) == len(one) + 2 * (22 + 32) + 4
     inside = (one > 0).all(axis=1) & (one < (2, 3)).all(axis=1)
     assert not inside.any() and one.dtype == np.float32
+    both = sim.positions_with_walls(2)
+    np.testing.assert_array_equal(both, np.concatenate([sim.positions, two]))
+    sim.step()
+    np.testing.assert_array_equal(sim.positions_with_walls(2)[: len(sim)], sim.positions)
 
 
 def test_a_report_recomputes_statistics_and_fits_the_viscosity(tmp_path: Path) -> None:
@@ -87,6 +91,13 @@ def test_a_report_recomputes_statistics_and_fits_the_viscosity(tmp_path: Path) -
     wrong["vel_std"][0] *= 1.001
     path.write_text(json.dumps(wrong))
     assert not datasets.report(tmp_path, pictures=False).passed
+
+
+def test_a_report_needs_one_format_alone(tmp_path: Path) -> None:
+    datasets.generate(small(formats=["gns"]), tmp_path, jobs=1)
+    assert [path.name for path in tmp_path.iterdir() if path.is_dir()] == ["gns"]
+    made = datasets.report(tmp_path, pictures=False)
+    assert made.passed and any(check.name.startswith("largest momentum") for check in made.checks)
 
 
 @pytest.mark.parametrize(("name", "changes"), [

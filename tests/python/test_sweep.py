@@ -6,7 +6,6 @@ import copy
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 from typing import Any
 
@@ -14,7 +13,7 @@ import numpy as np
 import pytest
 from commands import command, install
 from conftest import ROOT
-from kills import killed
+from kills import kill_when, killed
 
 import unipbd as up
 from unipbd import sweep
@@ -220,10 +219,5 @@ def test_ray_dask_and_submitit_go_on_and_give_the_same_table(
     if not full_tier:
         pytest.skip("heavy packages: full tier")
     install(sys.executable, {"ray": "ray", "dask": "distributed", "submitit": "submitit"}[engine])
-    run = subprocess.Popen([sys.executable, str(ENGINES), "one", str(tmp_path)], stdout=subprocess.DEVNULL)
-    while len(list(tmp_path.glob("runs/*.json"))) < 100:
-        assert run.poll() is None
-        time.sleep(0.005)
-    run.kill()
-    run.wait()
+    kill_when([sys.executable, str(ENGINES), "one", str(tmp_path)], lambda: len(list(tmp_path.glob("runs/*.json"))) >= 100)
     assert table_of(engine, tmp_path) == one

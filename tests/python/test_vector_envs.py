@@ -16,7 +16,7 @@ import unipbd as up  # noqa: E402
 import unipbd.envs  # noqa: E402, F401
 from unipbd.envs import BatchEnv, TaskEnv  # noqa: E402
 
-IDS = {"balance": "unipbd/KeepUpright-v0", "pour": "unipbd/PourOver-v0", "stir": "unipbd/Stir-v0", "boat": "unipbd/HoldBoat-v0"}
+IDS = {"balance": "unipbd/Balance-v0", "pour": "unipbd/Pour-v0", "stir": "unipbd/Stir-v0", "boat": "unipbd/HoldBoat-v0"}
 MODES = ["state", "grid", "points", "probes"]
 
 

@@ -120,24 +120,28 @@ class _Watch:
     """Tells how far the trajectories of a shard have come."""
 
     def __init__(self, tell: Callable[[Progress], object] | None, total: int, wanted: int) -> None:
-        self.tell, self.total, self.wanted = tell, total, wanted
+        self.tell, self.total = tell, total
         self.done, self.refused = total - wanted, 0
+        # Trajectories that were there already; the present one as well, where it goes on from a state.
+        self.there, self.begun = float(total - wanted), False
         self.started = self.told = time.monotonic()
 
     def finished(self, refused: int) -> None:
         """One more is done, after this many draws that were refused."""
-        self.done, self.refused = self.done + 1, self.refused + refused
+        self.done, self.refused, self.begun = self.done + 1, self.refused + refused, False
         self._say(0.0)
 
     def within(self, part: float) -> None:
         """This part of the present one is done."""
+        if not self.begun:
+            self.begun, self.there = True, self.there + part
         if time.monotonic() - self.told > BETWEEN:
             self._say(part)
 
     def _say(self, part: float) -> None:
         self.told = time.monotonic()
         elapsed = self.told - self.started
-        new = self.done - self.total + self.wanted + part
+        new = self.done + part - self.there
         left = elapsed / new * (self.total - self.done - part) if new > 0.0 else None
         if self.tell is not None:
             self.tell(Progress(self.done, self.total, self.refused, elapsed, left, part))
