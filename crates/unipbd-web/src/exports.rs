@@ -58,7 +58,7 @@ pub extern "C" fn unipbd_allocate(bytes: usize) -> *mut u8 {
 #[unsafe(no_mangle)]
 pub unsafe extern "C" fn unipbd_free(place: *mut u8, bytes: usize) {
     // SAFETY: it was a boxed slice of this length.
-    drop(unsafe { Box::from_raw(slice::from_raw_parts_mut(place, bytes)) });
+    drop(unsafe { Box::from_raw(std::ptr::slice_from_raw_parts_mut(place, bytes)) });
 }
 
 /// Where the last answer is, JSON in UTF-8.
