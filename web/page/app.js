@@ -45,7 +45,8 @@ const arrivals = {
     const pourable = scene.materials.map(({ name, phase }, number) => ({ name, phase, number }));
     const shownOnes = pourable.filter(({ phase }) => ["liquid", "gas", "smoke"].includes(phase));
     const first = shownOnes.find(({ phase }) => phase === "liquid") ?? shownOnes[0];
-    element("pour").replaceChildren(...shownOnes.map(({ name, number }) => new Option(name, number)), new Option("nothing", -1));
+    const options = shownOnes.map(({ name, number }) => new Option(name, number));
+    element("pour").replaceChildren(...options, new Option("nothing", -1));
     element("pour").value = first?.number ?? -1;
     const colors = ["material", "speed", "density", ...(temperatures ? ["temperature"] : [])];
     element("color").replaceChildren(...colors.map((color) => new Option(color)));

@@ -5,7 +5,8 @@ const TABLES = ["liquid", "gas", "smoke", "solid", "rope", "body", "emitter"];
 /** Keys that are offered for each of a kind, given or not. */
 const ALWAYS = { liquid: ["density", "kinematic_viscosity"], gas: ["density"] };
 /** Keys that say where or how large something is, or are no number to turn. */
-const FIXED = ["radius", "width", "mass", "particle_mass", "angle_deg", "spin_deg", "user_data", "length", "start", "stop", "gap"];
+const FIXED = ["radius", "width", "mass", "particle_mass", "angle_deg", "spin_deg", "user_data", "length", "start", "stop",
+  "gap"];
 const UNIT = /\[([^\]]+)\]/;
 
 /** The sliders of a scene: key of the override, label, unit, value, range. */

@@ -38,7 +38,7 @@ impl Session {
     /// Reads and builds a scene; each line of `settings` is an override, `liquid.water.kinematic_viscosity=2.0`.
     ///
     /// # Errors
-    /// The mistakes of the scene as JSON, see [`answer::mistakes`].
+    /// The mistakes of the scene as JSON: `text` as a terminal shows them, `problems` with their places.
     pub fn new(text: &str, settings: &str) -> Result<Session, Value> {
         let overrides = overrides(settings)?;
         let scene = unipbd_scene_file::parse(text, NAME, &overrides).map_err(|error| answer::mistakes(&error))?.scene;
