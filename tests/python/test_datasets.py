@@ -31,6 +31,14 @@ def test_shards_and_processes_give_the_same_bytes(small_set: Path, tmp_path: Pat
     same(small_set, tmp_path)
 
 
+def test_threads_give_the_same_bytes(tmp_path: Path) -> None:
+    recipe = small(scene={**POOL["scene"], "spacing": 0.012}, frames=3, trajectories=3)
+    for threads in (1, 3):
+        record = _trajectory.run_trajectory(recipe, 0, tmp_path / str(threads), threads)
+        assert record["particles"] > 2000
+    same(tmp_path / "1", tmp_path / "3")
+
+
 class Killed(BaseException):
     pass
 
