@@ -4,14 +4,15 @@
 #   ./test.sh           what every change must pass, in minutes
 #   ./test.sh --full    the long sizes too
 #   ./test.sh --miri    unsafe code of the portable lanes under Miri alone
+#   ./test.sh --browsers    the pages, the WebAssembly module and the npm package alone
 set -u
 cd "$(dirname "${BASH_SOURCE[0]}")" || exit 1
 
 case "${1:-}" in
     "") full= ;;
     --full) full=--full; export UNIPBD_FULL=1 ;;
-    --miri) full= ;;
-    *) sed -n '2,6p' "$0"; exit 2 ;;
+    --miri | --browsers) full= ;;
+    *) sed -n '2,7p' "$0"; exit 2 ;;
 esac
 
 passed=0
@@ -48,10 +49,21 @@ logs() {
 }
 
 # Pages that play a run, in a headless browser from the npm registry.
-browser() {
+replay() {
     cargo build --quiet -p unipbd-cli || return 1
     npm --prefix tests/browser ci --silent --no-audit --no-fund || return 1
-    UNIPBD_COMMAND="${CARGO_TARGET_DIR:-$PWD/target}/debug/unipbd" npm --prefix tests/browser test --silent
+    UNIPBD_COMMAND="${CARGO_TARGET_DIR:-$PWD/target}/debug/unipbd" npm --prefix tests/browser run replay --silent
+}
+
+# The WebAssembly module in Node and in a headless browser, beside native runs; the npm package.
+web() {
+    local out="${CARGO_TARGET_DIR:-$PWD/target}" profile=debug
+    scripts/web.sh || return 1
+    # Times are compared with those of a build for release in the full tier alone.
+    cargo build --quiet -p unipbd-web --example hashes ${full:+--release} || return 1
+    [ -z "$full" ] || profile=release
+    npm --prefix tests/browser ci --silent --no-audit --no-fund || return 1
+    UNIPBD_WEB="$out" UNIPBD_HASHES="$out/$profile/examples/hashes" npm --prefix tests/browser run web --silent
 }
 
 # What a release consists of, built here: archive of the command, crates, wheel and source distribution, checked.
@@ -83,6 +95,20 @@ miri() {
     skip Miri "the component is not installed (rustup component add --toolchain nightly miri rust-src)"
 }
 
+browsers() {
+    local lacks
+    if ! command -v npm >/dev/null; then
+        skip "replay page, module and page in browsers" "no npm here"
+        return
+    fi
+    part "replay page in a browser" replay
+    if lacks=$(scripts/web.sh --missing); then
+        skip "module and page for browsers" "$lacks"
+    else
+        part "module and page for browsers" web
+    fi
+}
+
 summary() {
     printf '\n%d passed, %d failed, %d skipped\n' "$passed" "$failed" "$skipped"
     [ "$failed" -eq 0 ]
@@ -98,6 +124,11 @@ optional() {
 
 if [ "${1:-}" = --miri ]; then
     miri
+    summary
+fi
+
+if [ "${1:-}" = --browsers ]; then
+    browsers
     summary
 fi
 
@@ -125,7 +156,7 @@ if command -v python3 >/dev/null; then
 else
     skip "logs, Python tests and documentation site" "no python3 here"
 fi
-if command -v npm >/dev/null; then part "replay page in a browser" browser; else skip "replay page in a browser" "no npm here"; fi
+browsers
 command -v ffmpeg >/dev/null || skip "MP4 by a real ffmpeg" "no ffmpeg here"
 
 summary

@@ -48,6 +48,18 @@ def plume() -> up.Scene:
 
 
 @pytest.fixture(scope="session")
+def small_set(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A small data set in all formats."""
+    from small_dataset import small
+
+    from unipbd import datasets
+
+    folder = tmp_path_factory.mktemp("set")
+    datasets.generate(small(), folder, jobs=1)
+    return folder
+
+
+@pytest.fixture(scope="session")
 def full_tier() -> bool:
     return os.environ.get("UNIPBD_TIER") == "full"
 

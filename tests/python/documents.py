@@ -7,7 +7,7 @@ A page is run from top to bottom in a folder of its own, in which `unipbd` is th
 - `sh`: run by bash, which stops at the first command that fails;
 - `python`: run by one interpreter per page, block after block;
 - `rust`: run by `cargo test --doc`, which `tests/src/lib.rs` tells about the page;
-- `text`, `bibtex`: something to read.
+- `text`, `bibtex`, `js`: something to read; `js` of the npm package is run by the tests of the browser.
 
 A block that is not run has a comment above it, `<!-- not run: REASON -->`, with a reason that `REASONS` knows.
 """
@@ -24,13 +24,13 @@ from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
-READ = {"json", "text", "bibtex", "{toctree}", "{include}", "{math}", "{autoclass}", "{eval-rst}"}
+READ = {"js", "json", "text", "bibtex", "{toctree}", "{include}", "{math}", "{autoclass}", "{eval-rst}"}
 # Reasons not to run a block, and what must be true of it.
 REASONS = {
     "unpublished": r"pip install|cargo (add|install)|conda install|unipbd-core = ",
     "hours long": r"--full|\./benches/|benches/|cargo (bench|run --release)|scripts/fuzz",
-    "minutes long": r"--full|benches/|scripts/|cargo (bench|run --release|test)|unipbd-validation",
-    "builds anew": r"cargo (install|build|publish)|pip install|maturin",
+    "minutes long": r"--full|benches/|scripts/|cargo (bench|run --release|test)|unipbd-validation|trajectories=1000",
+    "builds anew": r"cargo (install|build|publish)|pip install|maturin|scripts/web",
     "runs the tests": r"test\.sh|docs/build\.py|tests/python/run\.py",
     "needs a clone": r"git |cargo run --release",
     "needs another program": r"rerun|\.mp4|valgrind|jq|lichtblick",

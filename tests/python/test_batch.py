@@ -58,6 +58,23 @@ def test_a_world_that_diverges_is_named_and_stops_no_other(scene: up.Scene) -> N
     assert [batch[0].frame, batch[2].frame] == [3, 3]
 
 
+def test_a_frame_of_one_world_goes_on_beside_others(scene: up.Scene) -> None:
+    def let_fly(one: up.Scene, number: int) -> None:
+        if number == 1:
+            one.tank.clear()
+            one.gravity = (0.0, -1e9)
+
+    batch, alone = up.Batch(scene, n=3, threads=2, change=let_fly), scene.build(seed=scene.seed + 2)
+    batch[2].on_substep(lambda substep: None)
+    ends = [batch.begin(number) for number in range(3)]
+    ends[0]()
+    with pytest.raises(up.SolverError):
+        ends[1]()
+    ends[2]()
+    alone.step()
+    assert [batch[0].frame, batch[2].frame] == [1, 1] and batch[2].state_hash() == alone.state_hash()
+
+
 def test_hooks_work_in_single_worlds(scene: up.Scene) -> None:
     batch = up.Batch(scene, n=2, seeds=[1, 1])
     batch[0].on_substep(lambda s: s.add_acceleration((0.0, 9.81)))

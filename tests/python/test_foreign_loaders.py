@@ -4,15 +4,13 @@ from __future__ import annotations
 
 import json
 import subprocess
-import sys
-import venv
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from conftest import ROOT
-from test_datasets import small
+from commands import install, own_environment
+from small_dataset import small
 
 from unipbd import datasets
 
@@ -23,13 +21,8 @@ SCRIPT = Path(__file__).with_name("foreign_loaders.py")
 def python(full_tier: bool) -> Path:
     if not full_tier:
         pytest.skip("the full tier makes an environment for it")
-    place = ROOT / "target" / "foreign-loaders"
-    found = place / ("Scripts/python.exe" if sys.platform == "win32" else "bin/python")
-    if not found.exists():
-        venv.EnvBuilder(with_pip=True, clear=True).create(place)
-    pip = [str(found), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-    subprocess.run([*pip, "numpy", "h5py", "tfrecord"], check=True)
-    subprocess.run([*pip, "--no-deps", "--ignore-requires-python", "lagrangebench==0.2.0"], check=True)
+    found = own_environment("foreign-loaders", "numpy", "h5py", "tfrecord")
+    install(found, "--no-deps", "--ignore-requires-python", "lagrangebench==0.2.0")
     return found
 
 

@@ -6,11 +6,10 @@ import os
 import re
 import shutil
 import subprocess
-import sys
-import venv
 from pathlib import Path
 
 import pytest
+from commands import own_environment
 from conftest import ROOT
 
 import unipbd as up
@@ -21,12 +20,7 @@ EXAMPLE = ROOT / "crates" / "unipbd-py" / "examples" / "learn_ppo.py"
 def test_a_float_is_kept_upright_by_a_policy_that_was_learned(tmp_path: Path, full_tier: bool) -> None:
     if not full_tier:
         pytest.skip("torch is heavy: full tier")
-    place = ROOT / "target" / "learning"
-    python = place / ("Scripts/python.exe" if sys.platform == "win32" else "bin/python")
-    if not python.exists():
-        venv.EnvBuilder(with_pip=True, clear=True).create(place)
-    pip = [str(python), "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-    subprocess.run([*pip, "stable-baselines3", "matplotlib"], check=True)
+    python = own_environment("learning", "stable-baselines3", "matplotlib")
     # An environment of its own: stable-baselines3 wants an older Gymnasium.
     shutil.copytree(Path(up.__file__).parent, tmp_path / "package" / "unipbd")
     words = [str(python), str(EXAMPLE), "30000", str(tmp_path / "curve.png")]

@@ -22,10 +22,11 @@ PACKAGE = ROOT / "crates" / "unipbd-py"
 def test_the_version_stands_in_one_file() -> None:
     version = f'"{up.__version__}"'
     root = (ROOT / "Cargo.toml").read_text()
-    assert re.findall(r'^(?:version|unipbd-\w+) .*?("\d+\.\d+\.\d+")', root, re.MULTILINE) == [version] * 3
+    assert re.findall(r'^(?:version|unipbd-[\w-]+) .*?("\d+\.\d+\.\d+")', root, re.MULTILINE) == [version] * 4
     for manifest in ROOT.glob("crates/*/Cargo.toml"):
         assert "version.workspace = true" in manifest.read_text(), manifest
     assert 'dynamic = ["version"]' in (PACKAGE / "pyproject.toml").read_text()
+    assert f'"version": {version}' in (ROOT / "web/package/package.json").read_text()
     assert up.__version__ in (ROOT / "CHANGELOG.md").read_text()
 
 
@@ -47,7 +48,7 @@ def test_the_address_is_that_of_the_workspace() -> None:
     for path in ("CITATION.cff", "packaging/conda/recipe.yaml"):
         addresses = set(re.findall(r"https://github\.com/[\w.-]+/[\w.-]+", (ROOT / path).read_text()))
         assert addresses == {address[1]}, path
-    for manifest in ("core", "cli", "py"):
+    for manifest in ("core", "scene-file", "cli", "py", "web"):
         assert "repository.workspace = true" in (ROOT / f"crates/unipbd-{manifest}/Cargo.toml").read_text()
 
 
@@ -108,7 +109,7 @@ def test_the_source_distribution_is_complete(tmp_path: Path) -> None:
     with tarfile.open(archive) as files:
         names = {name.split("/", 1)[1] for name in files.getnames() if "/" in name}
     here = subprocess.run(
-        ["git", "ls-files", "crates/unipbd-core/src", "crates/unipbd-cli/src", "crates/unipbd-py"],
+        ["git", "ls-files", "crates/unipbd-core/src", "crates/unipbd-scene-file/src", "crates/unipbd-cli/src", "crates/unipbd-py"],
         cwd=ROOT, capture_output=True, text=True, check=True,
     ).stdout.split()
     wanted = {name.replace("crates/unipbd-py/python/", "python/") for name in here if "/python/" in name or "/src/" in name}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -10,10 +11,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from commands import command, install
 from conftest import ROOT
+from kills import kill_when, killed
 
 import unipbd as up
 from unipbd import sweep
+from unipbd._work import run_all
 
 pandas = pytest.importorskip("pandas")
 
@@ -134,6 +138,21 @@ def test_mistakes_are_named(values: dict[str, Any], key: str, message: str) -> N
     assert caught.value.key == key and message in str(caught.value)
 
 
+def end_at_three(number: int) -> int:
+    return os._exit(9) if number == 3 else number
+
+
+def test_a_worker_that_is_killed_is_said_and_a_missing_package_too(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with pytest.raises(up.UnipbdError, match="ran out of memory; the same call goes on"):
+        list(run_all(end_at_three, range(6), 2))
+    sweep.run(made(grid=[], list=[]), tmp_path, jobs=1)
+    monkeypatch.setitem(sys.modules, "pyarrow", None)
+    with pytest.raises(up.UnipbdError, match=r'pip install "unipbd\[data\]"'):
+        sweep.write_table(tmp_path, tmp_path / "results.parquet")
+
+
 def test_a_diagnostic_that_is_not_there_is_named(tmp_path: Path) -> None:
     with pytest.raises(up.UnipbdError, match="no diagnostic 'sped_max'"):
         sweep.run(made(reduce={"sped_max": "max"}), tmp_path, jobs=1)
@@ -143,13 +162,32 @@ def test_the_command_writes_the_table(tmp_path: Path) -> None:
     up.Scene.from_dict(SCENE).save(tmp_path / "pool.toml")
     text = 'scene = "pool.toml"\n[[grid]]\nkey = "gravity.1"\nvalues = [-5.0, -10.0]\n'
     (tmp_path / "sweep.toml").write_text(text)
-    words = [sys.executable, "-m", "unipbd._command", "sweep", str(tmp_path / "sweep.toml"), "-o", str(tmp_path / "out")]
-    run = subprocess.run([*words, "--jobs", "1"], capture_output=True, text=True)
+    words = ["sweep", tmp_path / "sweep.toml", "-o", tmp_path / "out"]
+    run = command(*words, "--jobs", 1)
     assert run.returncode == 0 and "2 of 2 runs" in run.stdout, run.stderr
     assert len((tmp_path / "out" / "results.csv").read_text().splitlines()) == 3
     (tmp_path / "sweep.toml").write_text(text.replace("gravity.1", "gravty.1"))
-    run = subprocess.run(words, capture_output=True, text=True)
+    run = command(*words)
     assert run.returncode == 3 and "sweep.toml:3" in run.stderr, run.stderr
+
+
+def test_two_hundred_runs_that_were_killed_half_way_go_on(tmp_path: Path) -> None:
+    up.Scene.from_dict(SCENE).save(tmp_path / "pool.toml")
+    (tmp_path / "sweep.toml").write_text(
+        'scene = "pool.toml"\ndraws = 20\nsampling = "latin_hypercube"\n'
+        '[[grid]]\nkey = "gravity.1"\nfrom = -10.0\nto = -1.0\ncount = 10\n'
+        '[[random]]\nkey = "block.0.max"\nuniform = [[0.3, 0.3], [0.8, 0.8]]\n')
+    whole, parts = tmp_path / "whole", tmp_path / "parts"
+    arguments = ["sweep", tmp_path / "sweep.toml", "-o", parts, "--jobs", 2]
+    killed(arguments, lambda: len(list(parts.glob("runs/*.json"))) >= 100)
+    done = len(list(parts.glob("runs/*.json")))
+    assert 100 <= done < 200 and not (parts / "results.csv").exists()
+    written = {path: path.stat().st_mtime_ns for path in parts.glob("runs/*.json")}
+    run = command(*arguments)
+    assert run.returncode == 0 and "200 of 200 runs" in run.stdout, run.stderr
+    assert all(path.stat().st_mtime_ns == time for path, time in written.items()), "no run is done twice"
+    assert command(*arguments[:2], "-o", whole, "--jobs", 1).returncode == 0
+    assert (whole / "results.csv").read_bytes() == (parts / "results.csv").read_bytes()
 
 
 # -- machinery of others -----------------------------------------------------------------------
@@ -157,24 +195,29 @@ def test_the_command_writes_the_table(tmp_path: Path) -> None:
 ENGINES = ROOT / "crates" / "unipbd-py" / "examples" / "sweep_engines.py"
 
 
-def table_of(engine: str, python: str, folder: Path) -> bytes:
-    run = subprocess.run([python, str(ENGINES), engine, str(folder)], capture_output=True, text=True, timeout=300)
+def table_of(engine: str, folder: Path) -> bytes:
+    run = subprocess.run([sys.executable, str(ENGINES), engine, str(folder)], capture_output=True, text=True, timeout=600)
     assert run.returncode == 0, run.stderr[-3000:]
     return (folder / "results.csv").read_bytes()
 
 
-def test_joblib_gives_the_same_table_as_one_process(tmp_path: Path) -> None:
+@pytest.fixture(scope="module")
+def one(tmp_path_factory: pytest.TempPathFactory) -> bytes:
+    """The table of the example by one process."""
+    return table_of("one", tmp_path_factory.mktemp("one"))
+
+
+def test_joblib_gives_the_same_table_as_one_process(one: bytes, tmp_path: Path) -> None:
     pytest.importorskip("joblib")
-    one = table_of("one", sys.executable, tmp_path / "one")
-    assert table_of("joblib", sys.executable, tmp_path / "joblib") == one and one.count(b"\n") == 7
+    assert table_of("joblib", tmp_path) == one and one.count(b"\n") == 201
 
 
 @pytest.mark.parametrize("engine", ["ray", "dask", "submitit"])
-def test_ray_dask_and_submitit_give_the_same_table(engine: str, tmp_path: Path, full_tier: bool) -> None:
+def test_ray_dask_and_submitit_go_on_and_give_the_same_table(
+    engine: str, one: bytes, tmp_path: Path, full_tier: bool
+) -> None:
     if not full_tier:
         pytest.skip("heavy packages: full tier")
-    wanted = {"ray": "ray", "dask": "distributed", "submitit": "submitit"}[engine]
-    pip = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check", wanted]
-    subprocess.run(pip, check=True)
-    one = table_of("one", sys.executable, tmp_path / "one")
-    assert table_of(engine, sys.executable, tmp_path / engine) == one
+    install(sys.executable, {"ray": "ray", "dask": "distributed", "submitit": "submitit"}[engine])
+    kill_when([sys.executable, str(ENGINES), "one", str(tmp_path)], lambda: len(list(tmp_path.glob("runs/*.json"))) >= 100)
+    assert table_of(engine, tmp_path) == one

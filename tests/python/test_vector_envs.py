@@ -16,7 +16,7 @@ import unipbd as up  # noqa: E402
 import unipbd.envs  # noqa: E402, F401
 from unipbd.envs import BatchEnv, TaskEnv  # noqa: E402
 
-IDS = {"balance": "unipbd/KeepUpright-v0", "pour": "unipbd/PourOver-v0", "stir": "unipbd/Stir-v0", "boat": "unipbd/HoldBoat-v0"}
+IDS = {"balance": "unipbd/Balance-v0", "pour": "unipbd/Pour-v0", "stir": "unipbd/Stir-v0", "boat": "unipbd/HoldBoat-v0"}
 MODES = ["state", "grid", "points", "probes"]
 
 
@@ -73,6 +73,30 @@ def compare(expected: tuple[Any, ...], found: tuple[Any, ...]) -> None:
         assert one is None and other is None or np.array_equal(one, other)
 
 
+def test_wrappers_of_gymnasium_take_a_batch_as_they_take_their_own() -> None:
+    """Statistics of episodes, flat and normalized observations, normalized rewards, infos as a list."""
+
+    def wrapped(envs: Any) -> Any:
+        wrappers = gymnasium.wrappers.vector
+        envs = wrappers.RecordEpisodeStatistics(envs)
+        envs = wrappers.NormalizeObservation(wrappers.FlattenObservation(envs))
+        return wrappers.DictInfoToList(wrappers.NormalizeReward(wrappers.RescaleAction(envs, -2.0, 2.0)))
+
+    def single() -> Any:
+        return gymnasium.wrappers.TimeLimit(TaskEnv("pour", observation="grid"), 6)
+
+    theirs = wrapped(vector.SyncVectorEnv([single] * 2))
+    ours = wrapped(BatchEnv("pour", 2, observation="grid", max_episode_steps=6))
+    np.testing.assert_array_equal(theirs.reset(seed=3)[0], ours.reset(seed=3)[0])
+    lengths = []
+    for action in actions(ours, 16):
+        expected, found = theirs.step(action), ours.step(action)
+        for one, other in zip(expected[:-1], found[:-1], strict=True):
+            np.testing.assert_array_equal(one, other)
+        lengths += [info["episode"]["l"] for info in found[-1] if "episode" in info]
+    assert lengths and set(lengths) == {6}
+
+
 def test_make_vec_makes_them_and_seeds_repeat() -> None:
     def play(seed: Any) -> Any:
         envs = gymnasium.make_vec(IDS["stir"], num_envs=2, vectorization_mode="vector_entry_point")
@@ -117,19 +141,44 @@ def test_grids_points_and_probes_show_the_particles() -> None:
 def test_a_world_that_diverges_ends_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     envs = BatchEnv("pour", 3)
     envs.reset(seed=0)
-    still, step = np.zeros((3, 1), dtype=np.float32), envs.batch.step
+    still, begin = np.zeros((3, 1), dtype=np.float32), envs.batch.begin
 
-    def diverge(worlds: Any) -> None:
-        step(worlds=[number for number in worlds if number != 1])
-        raise up.SolverError("the speed is not finite", world=1)
+    def diverge() -> None:
+        raise up.SolverError("the speed is not finite")
 
-    monkeypatch.setattr(envs.batch, "step", diverge)
+    monkeypatch.setattr(envs.batch, "begin", lambda number: diverge if number == 1 else begin(number))
     _, rewards, ended, late, infos = envs.step(still)
     assert ended.tolist() == [False, True, False] and not late.any() and rewards[1] == 0.0
     assert infos["diverged"].tolist() == [False, True, False]
-    monkeypatch.setattr(envs.batch, "step", step)
+    monkeypatch.setattr(envs.batch, "begin", begin)
     seen, _, ended, _, _ = envs.step(still)
     assert not ended.any() and seen[1].any() and envs._steps.tolist() == [2, 0, 2]
+
+
+def test_an_action_that_fails_leaves_no_world_under_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    envs = BatchEnv("pour", 3, threads=2)
+    envs.reset(seed=0)
+    act = envs.task.act
+
+    def fail(sim: Any, memory: Any, action: Any) -> None:
+        if sim is envs.batch[2]:
+            raise KeyError("no such lever")
+        act(sim, memory, action)
+
+    monkeypatch.setattr(envs.task, "act", fail)
+    with pytest.raises(KeyError, match="lever"):
+        envs.step(np.zeros((3, 1), dtype=np.float32))
+    monkeypatch.setattr(envs.task, "act", act)
+    envs.reset(seed=0)
+    seen, *_ = envs.step(np.zeros((3, 1), dtype=np.float32))
+    np.testing.assert_array_equal(seen[0], fresh_step("pour"))
+
+
+def fresh_step(task: str) -> Any:
+    """What a single environment shows after a first step without action."""
+    env = TaskEnv(task)
+    env.reset(seed=0)
+    return env.step(np.zeros(env.action_space.shape, dtype=np.float32))[0]
 
 
 def test_pictures_and_wrong_arguments() -> None:

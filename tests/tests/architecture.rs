@@ -180,6 +180,24 @@ fn the_core_reads_no_file_and_prints_nothing() {
     }
 }
 
+/// Systems round these differently, and bits must not depend on the system.
+#[test]
+fn the_core_takes_sines_and_exponentials_from_one_library() {
+    let functions = "sin cos tan sin_cos asin acos atan atan2 sinh cosh tanh exp exp2 exp_m1 ln ln_1p log log2 log10 powf powi \
+        hypot cbrt to_angle angle_to";
+    for path in files(&core()) {
+        let code = code(&path);
+        assert!(!code.contains("::from_angle("), "{}: math::direction is the unit vector at an angle", path.display());
+        for function in functions.split_whitespace() {
+            assert!(
+                !code.contains(&format!(".{function}(")),
+                "{} calls {function} of a number, not of libm",
+                path.display()
+            );
+        }
+    }
+}
+
 #[test]
 fn the_tables_name_modules_that_exist() {
     let exists = |name: &str| core().join(format!("{name}.rs")).exists() || core().join(name).is_dir();

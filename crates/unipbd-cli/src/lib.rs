@@ -12,7 +12,6 @@ pub mod read;
 pub mod record;
 pub mod render;
 mod report;
-pub mod scene_file;
 pub mod simulation;
 pub mod snapshot;
 pub mod threads;
@@ -22,6 +21,7 @@ use std::ffi::OsString;
 use clap::Parser;
 
 pub use exit::Exit;
+pub use unipbd_scene_file as scene_file;
 
 /// Runs the command line with these arguments, the first of which is the name of the program.
 ///

@@ -45,7 +45,7 @@ def learn(env: Balance, rng: np.random.Generator) -> Weights:
 
 def main() -> None:
     env: Balance = gymnasium.make("unipbd/Balance-v0")
-    assert isinstance(env.unwrapped, unipbd.envs.Balance)
+    assert isinstance(env.unwrapped, unipbd.envs.TaskEnv)
     weights = learn(env, np.random.default_rng(0))
     # Water that it has not seen.
     idle = np.mean([play(env, np.zeros(6), seed) for seed in range(100, 105)])

@@ -35,7 +35,8 @@ def main() -> None:
         candidates = search.ask()
         search.tell(candidates, error(candidates, measured))
     values = dict(zip(KEYS, np.exp(search.result.xbest), strict=True))
-    print(f"{search.result.evaluations} runs, error {search.result.fbest:.2e}: {values}")
+    words = ", ".join(f"{key} {value:.5g}" for key, value in values.items())
+    print(f"{search.result.evaluations} runs, error {search.result.fbest:.2e}: {words}")
     for key, value in values.items():
         assert abs(value / TRUE[key] - 1.0) < 0.05, key
 

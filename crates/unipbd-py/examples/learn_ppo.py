@@ -24,8 +24,8 @@ class Worlds(VecEnv):  # type: ignore[misc,unused-ignore]
     """The worlds as stable-baselines3 wants them: finished ones start anew in the same step."""
 
     def __init__(self, envs: BatchEnv) -> None:
-        super().__init__(envs.num_envs, envs.single_observation_space, envs.single_action_space)
         self.envs = envs
+        super().__init__(envs.num_envs, envs.single_observation_space, envs.single_action_space)
         self.returns: list[float] = []
         self.lengths: list[int] = []
         self._total, self._length = np.zeros(envs.num_envs), np.zeros(envs.num_envs, dtype=int)

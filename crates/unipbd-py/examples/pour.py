@@ -23,7 +23,7 @@ def rule(observation: npt.NDArray[np.float32]) -> npt.NDArray[np.float32]:
 
 def main() -> None:
     env = gymnasium.make("unipbd/Pour-v0", render_mode="rgb_array")
-    assert isinstance(env.unwrapped, unipbd.envs.Pour)
+    assert isinstance(env.unwrapped, unipbd.envs.TaskEnv)
     check_env(env.unwrapped, skip_render_check=False)
     observation, _ = env.reset(seed=1)
     total, ended, frames = 0.0, False, 0

@@ -20,7 +20,10 @@ HEIGHTS = sweep.Sweep.from_dict({
         "block": [{"material": "water", "min": [0, 0], "max": [0.5, 0.8]}],
         "tank": [{"min": [0, 0], "max": [2, 2], "open": ["top"]}],
     },
-    "grid": [{"key": "block.0.max.1", "values": [0.6, 0.9, 1.2]}, {"key": "gravity.1", "values": [-9.81, -1.62]}],
+    "grid": [
+        {"key": "block.0.max.1", "from": 0.3, "to": 1.3, "count": 20},
+        {"key": "gravity.1", "from": -9.81, "to": -1.62, "count": 10},
+    ],
     "reduce": {"speed_max": "max"},
 })
 Row = dict[str, Any]
@@ -47,12 +50,30 @@ def by_dask(folder: str) -> None:
         client.gather([client.submit(sweep.run_point, HEIGHTS, index, folder, retries=3) for index in left])
 
 
+SHARES = 4
+"""Jobs of submitit: a process that does one run alone would take longer to start than to run."""
+
+
+class Share:
+    """A share of the sweep as a job. One that a cluster stops is queued again, and goes on with what is left."""
+
+    def __init__(self, folder: str) -> None:
+        self.folder = folder
+
+    def __call__(self, number: int) -> None:
+        for index in sweep.left(HEIGHTS, self.folder, (number, SHARES)):
+            sweep.run_point(HEIGHTS, index, self.folder)
+
+    def checkpoint(self, number: int) -> Any:
+        return importlib.import_module("submitit").helpers.DelayedSubmission(self, number)
+
+
 def by_submitit(folder: str) -> None:
     submitit = importlib.import_module("submitit")
     # cluster="slurm", and a folder that all machines see, for a cluster.
     executor = submitit.AutoExecutor(folder=f"{folder}/submitit", cluster="local")
     executor.update_parameters(timeout_min=10, cpus_per_task=1)
-    jobs = [executor.submit(sweep.run_point, HEIGHTS, index, folder) for index in sweep.left(HEIGHTS, folder)]
+    jobs = [executor.submit(Share(folder), number) for number in range(1, SHARES + 1)]
     for job in jobs:
         job.result()
 

@@ -37,6 +37,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<recording::Recorder>()?;
     module.add_class::<log::LogReader>()?;
     module.add_class::<pool::Pool>()?;
+    module.add_class::<pool::Ticket>()?;
     module.add_function(wrap_pyfunction!(scene::parse_scene, module)?)?;
     module.add_function(wrap_pyfunction!(scene::load_scene, module)?)?;
     module.add_function(wrap_pyfunction!(scene::check_scene, module)?)?;

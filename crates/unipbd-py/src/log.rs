@@ -80,9 +80,7 @@ fn frame_dict(py: Python<'_>, frame: Frame) -> PyResult<Bound<'_, PyDict>> {
     dict.set_item("temperatures", snapshot.temperatures.map(|values| arrays::fixed(py, values)))?;
     let bodies = PyList::empty(py);
     for recorded in snapshot.bodies.iter().filter(|body| !body.removed) {
-        let entry = body::shape(py, recorded)?;
-        entry.update(body::motion(py, recorded)?.as_mapping())?;
-        bodies.append(entry)?;
+        bodies.append(body::quantities(py, recorded)?)?;
     }
     dict.set_item("bodies", bodies)?;
     let events = frame.events.iter().map(|event| (event.time, severity(event.severity), event.message.clone()));

@@ -1,5 +1,8 @@
 //! Many worlds at once, each on one thread.
 
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::mpsc::{Receiver, channel};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 
@@ -31,6 +34,27 @@ impl Pool {
     #[getter]
     fn threads(&self) -> usize {
         self.threads
+    }
+
+    /// Starts a frame of a world that has no hooks, and returns at once: the world is busy until the ticket was waited for.
+    fn begin(&self, py: Python<'_>, world: &Solver) -> PyResult<Ticket> {
+        drop(world.lock(py)?);
+        let (sender, outcome) = channel();
+        let world = world.shared();
+        let frame = move || {
+            let mut world = world.lock().unwrap_or_else(PoisonError::into_inner);
+            let outcome = catch_unwind(AssertUnwindSafe(|| world.advance().map(drop)));
+            drop(world);
+            // Nobody may be waiting any more.
+            let _ = sender.send(outcome);
+        };
+        py.detach(|| {
+            self.with(|pool| match pool {
+                Some(pool) => pool.spawn_fifo(frame),
+                None => frame(),
+            });
+        });
+        Ok(Ticket { outcome: Mutex::new(outcome) })
     }
 
     /// Steps every world by this many frames. A world that fails does not stop the others; the index
@@ -71,8 +95,39 @@ impl Pool {
     }
 }
 
+/// How a frame ended: well, with an error, or with a panic.
+type Outcome = Result<Result<(), SolverError>, Box<dyn Any + Send>>;
+
+/// A frame under way.
+#[pyclass(frozen, module = "unipbd._native")]
+pub struct Ticket {
+    outcome: Mutex<Receiver<Outcome>>,
+}
+
+#[pymethods]
+impl Ticket {
+    /// Waits for the end of the frame; raises its error. A second call returns at once.
+    fn wait(&self, py: Python<'_>) -> PyResult<()> {
+        let outcome = py.detach(|| self.outcome.lock().unwrap_or_else(PoisonError::into_inner).recv());
+        match outcome {
+            Ok(Ok(Err(error))) => Err(errors::solver(py, &error)),
+            Ok(Err(panic)) => resume_unwind(panic),
+            Ok(Ok(Ok(()))) | Err(_) => Ok(()),
+        }
+    }
+}
+
 impl Pool {
+    /// Runs this work on the threads of the pool, and waits for it.
     fn install(&self, work: impl FnOnce() + Send) {
+        self.with(|pool| match pool {
+            Some(pool) => pool.install(work),
+            None => work(),
+        });
+    }
+
+    /// The threads, made where there are none yet; `None` where none can be had.
+    fn with<T>(&self, use_pool: impl FnOnce(Option<&ThreadPool>) -> T) -> T {
         let mut made = self.made.lock().unwrap_or_else(PoisonError::into_inner);
         let process = std::process::id();
         if made.as_ref().is_none_or(|(of, _)| *of != process) {
@@ -81,9 +136,6 @@ impl Pool {
             let inherited = std::mem::replace(&mut *made, pool.ok().map(|pool| (process, pool)));
             std::mem::forget(inherited);
         }
-        match &*made {
-            Some((_, pool)) => pool.install(work),
-            None => work(),
-        }
+        use_pool(made.as_ref().map(|(_, pool)| pool))
     }
 }

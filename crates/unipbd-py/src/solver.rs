@@ -1,6 +1,6 @@
 //! The simulation: what Python steps, looks at and edits.
 
-use std::sync::{Mutex, MutexGuard, PoisonError, TryLockError};
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
 
 use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::PyTraverseError;
@@ -22,7 +22,7 @@ use crate::{arrays, body, diagnostics, edit, errors, picture, scene, world_edit}
 /// A simulation. One thread at a time uses it.
 #[pyclass(frozen, module = "unipbd._native")]
 pub struct Solver {
-    world: Mutex<World>,
+    world: Arc<Mutex<World>>,
     /// The functions of the groups, for the garbage collector.
     callables: Mutex<Vec<Callable>>,
 }
@@ -36,6 +36,11 @@ impl Solver {
             Err(TryLockError::Poisoned(poisoned)) => Ok(poisoned.into_inner()),
             Err(TryLockError::WouldBlock) => Err(errors::busy(py)),
         }
+    }
+
+    /// The world for a thread that Python knows nothing of.
+    pub fn shared(&self) -> Arc<Mutex<World>> {
+        Arc::clone(&self.world)
     }
 
     /// Reads from the run, with its rows in the order of their ids.
@@ -76,7 +81,7 @@ impl Solver {
             failure: Failure::default(),
             order: None,
         };
-        Ok(Solver { world: Mutex::new(world), callables: Mutex::new(Vec::new()) })
+        Ok(Solver { world: Arc::new(Mutex::new(world)), callables: Mutex::new(Vec::new()) })
     }
 
     /// A simulation is often in the closure of its own group.
@@ -318,16 +323,11 @@ impl Solver {
         Ok((gravity.x, gravity.y))
     }
 
-    fn body_motion<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyDict>> {
+    /// A quantity of a body, by name.
+    fn body_quantity<'py>(&self, py: Python<'py>, index: usize, name: &str) -> PyResult<Bound<'py, PyAny>> {
         let world = self.lock(py)?;
         let body = world.running.solver.bodies().get(index).ok_or_else(|| errors::other(py, "no such body"))?;
-        body::motion(py, body)
-    }
-
-    fn body_shape<'py>(&self, py: Python<'py>, index: usize) -> PyResult<Bound<'py, PyDict>> {
-        let world = self.lock(py)?;
-        let body = world.running.solver.bodies().get(index).ok_or_else(|| errors::other(py, "no such body"))?;
-        body::shape(py, body)
+        body::quantity(py, body, name)
     }
 
     /// The present frame as the bytes of a PNG file.

@@ -1,6 +1,6 @@
 //! Room for bodies: the initial fill of a scene stays outside of them.
 
-use crate::math::Vector64;
+use crate::math::{Vector64, direction};
 use crate::rigid::Pose;
 use crate::shapes::Shape;
 
@@ -27,6 +27,6 @@ impl Solid {
         let arm = point - self.pose.position;
         let reach = self.shape.bounding_radius() + clearance;
         arm.length_squared() < reach * reach
-            && self.shape.nearest(Vector64::from_angle(-self.pose.angle).rotate(arm)).distance < clearance
+            && self.shape.nearest(direction(-self.pose.angle).rotate(arm)).distance < clearance
     }
 }

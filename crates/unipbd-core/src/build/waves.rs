@@ -58,7 +58,7 @@ fn lift(wave: &Wave, phase: f64, x: f64, y: f64) -> f64 {
     if distance <= 0.0 {
         return 0.0;
     }
-    wave.amplitude * (k * x + phase).cos() * (k * distance).sinh() / (k * depth).sinh()
+    wave.amplitude * libm::cos(k * x + phase) * libm::sinh(k * distance) / libm::sinh(k * depth)
 }
 
 #[cfg(test)]

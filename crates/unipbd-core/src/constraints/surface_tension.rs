@@ -243,7 +243,7 @@ const DIFFERENCE: Real = 0.02;
 impl Tension {
     /// The tension of a liquid, where c = 1 gives a flat surface this energy per length.
     fn new(liquid: &Liquid, spacing: f64, flat: f64) -> Self {
-        let (sigma, cosine) = (liquid.surface_tension, liquid.contact_angle.to_radians().cos());
+        let (sigma, cosine) = (liquid.surface_tension, libm::cos(liquid.contact_angle.to_radians()));
         Tension {
             line: real(LINE * sigma / flat),
             hold: real(HOLD * sigma / spacing),

@@ -8,7 +8,7 @@ mod push_out;
 mod saved;
 mod soft_bodies;
 
-use crate::math::{Real, Vector, Vector64, vector, wide};
+use crate::math::{Real, Vector, Vector64, direction, vector, wide};
 use crate::particles::Particles;
 use crate::rigid::contact::{Contacts, Joint, JointKind};
 use crate::rigid::{Bodies, Body, HeldRow, Mobilities};
@@ -119,7 +119,7 @@ impl RigidBodies {
     pub(crate) fn tie(&mut self, id: u32, body: &str, at: Vector64) {
         let Some(number) = self.views().iter().position(|view| view.name == body) else { return };
         let pose = self.bodies.pose(number as u32);
-        let place = Vector64::from_angle(-pose.angle).rotate(at - pose.position);
+        let place = direction(-pose.angle).rotate(at - pose.position);
         self.tied.push(Tied { id, body: number as u32, place });
     }
 
@@ -194,7 +194,7 @@ impl RigidBodies {
     fn hinge_rows(&self, joint: Joint) -> impl Iterator<Item = HeldRow> {
         let bodies = &self.bodies;
         let on = move |body: u32, anchor: Vector64, sign: f64, axis: Vector64, turn: f64| {
-            let arm = Vector64::from_angle(bodies.pose(body).angle).rotate(anchor);
+            let arm = direction(bodies.pose(body).angle).rotate(anchor);
             (body, [sign * axis.x, sign * axis.y, sign * (arm.perp_dot(axis) + turn)])
         };
         let (x, y, none) = ((Vector64::X, 0.0), (Vector64::Y, 0.0), Vector64::ZERO);
@@ -202,8 +202,7 @@ impl RigidBodies {
             JointKind::Hinge { .. } => vec![x, y],
             JointKind::Weld { .. } => vec![x, y, (none, 1.0)],
             JointKind::Slider { axis, .. } => {
-                let along =
-                    Vector64::from_angle(joint.other.map_or(0.0, |other| bodies.pose(other).angle)).rotate(axis);
+                let along = direction(joint.other.map_or(0.0, |other| bodies.pose(other).angle)).rotate(axis);
                 vec![(along.perp(), 0.0), (none, 1.0)]
             }
             _ => Vec::new(),

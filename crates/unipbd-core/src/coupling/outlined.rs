@@ -3,7 +3,7 @@
 
 use super::RigidBodies;
 use crate::constraints::OutlineLoad;
-use crate::math::{Vector, Vector64, vector};
+use crate::math::{Vector, direction, vector};
 use crate::particles::Particles;
 use crate::rigid::{Body, BodyKind, Pose};
 use crate::scene::WALL_OF_GRID;
@@ -88,7 +88,7 @@ impl RigidBodies {
 
     /// Puts outlines where their bodies are, and where they are predicted to be.
     pub(crate) fn place_outlines(&self, outlines: &mut Outlines) {
-        let place = |pose: Pose| Place { position: pose.position, axis: Vector64::from_angle(pose.angle) };
+        let place = |pose: Pose| Place { position: pose.position, axis: direction(pose.angle) };
         outlines.place(|body| [place(self.bodies.pose(body)), place(self.bodies.predicted_pose(body))]);
     }
 

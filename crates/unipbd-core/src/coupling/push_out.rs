@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::RigidBodies;
-use crate::math::{Vector, Vector64, vector, wide};
+use crate::math::{Vector, Vector64, direction, vector, wide};
 use crate::neighbors::Neighbors;
 use crate::particles::Particles;
 use crate::phase::Phase;
@@ -121,7 +121,7 @@ impl RigidBodies {
             End::Start => self.bodies.pose(body),
             End::Predicted => self.bodies.predicted_pose(body),
         };
-        Vector64::from_angle(-pose.angle).rotate(point - pose.position)
+        direction(-pose.angle).rotate(point - pose.position)
     }
 
     /// Moves a particle out of a body along the face that `way` names; tells whether it was inside.
@@ -139,7 +139,7 @@ impl RigidBodies {
         }
         let (row, pose) = (row as usize, self.bodies.predicted_pose(body));
         let arm = wide(particles.position[row]) - pose.position;
-        let normal = Vector64::from_angle(pose.angle).rotate(way.normal);
+        let normal = direction(pose.angle).rotate(way.normal);
         let depth = -way.distance;
         // Only the part of the approach that arose in this substep becomes velocity.
         let moved = wide(particles.displacement[row]) - self.bodies.displacement_at(body, arm);

@@ -3,7 +3,7 @@
 use super::RigidBodies;
 use super::outlined::shape;
 use crate::constraints::Member;
-use crate::math::{Vector64, vector, wide};
+use crate::math::{Vector64, angle_of, direction, vector, wide};
 use crate::particles::Particles;
 use crate::rigid::{BodyKind, Pose, Twist};
 use crate::rows::RowIndex;
@@ -65,7 +65,7 @@ impl RigidBodies {
                 spin += arm.perp_dot(wide(particles.velocity[row]) - linear);
                 inertia += arm.length_squared();
             }
-            let pose = Pose { position: center, angle: turned.to_angle() };
+            let pose = Pose { position: center, angle: angle_of(turned) };
             let angular = if inertia > 0.0 { spin / inertia } else { 0.0 };
             let soft = self.bodies.elasticity(id).is_some_and(|how| how.compliance > 0.0);
             let outline = soft.then(|| matched.deformed(&places, rest, pose));
@@ -87,7 +87,7 @@ impl RigidBodies {
 impl Matched {
     /// The outline moved as the samples near it were, in body coordinates.
     fn deformed(&self, places: &[Vector64], rest: &[Vector64], pose: Pose) -> Vec<Vector64> {
-        let back = Vector64::from_angle(-pose.angle);
+        let back = direction(-pose.angle);
         let moved = |corner: &Vector64| {
             let (mut sum, mut weights) = (Vector64::ZERO, 1e-12);
             for (place, r) in places.iter().zip(rest) {

@@ -37,7 +37,7 @@ pub(super) fn scale(contacts: &[Contact], bodies: &Bodies, up: Vector64, k: f64,
     out.extend(bodies.inverse_masses.iter().enumerate().map(|(id, response)| {
         let base = if support[heap[id]].is_finite() { support[heap[id]] } else { lowest[heap[id]] };
         let height = (bodies.poses[id].position.dot(up) - base).max(0.0);
-        let factor = (k * height).exp().min(LARGEST);
+        let factor = libm::exp(k * height).min(LARGEST);
         InverseMass { linear: response.linear * factor, angular: response.angular * factor }
     }));
 }

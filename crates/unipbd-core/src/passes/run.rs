@@ -9,6 +9,8 @@ use crate::simd::Level;
 use crate::simd::avx512::Avx512;
 use crate::simd::lanes::{ColumnPair, Entry, Lanes, Turn, Two};
 use crate::simd::portable::Portable;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+use crate::simd::wasm::Simd128;
 #[cfg(target_arch = "x86_64")]
 use crate::simd::x86::{Avx2, Sse2};
 #[cfg(target_arch = "x86_64")]
@@ -62,6 +64,9 @@ pub(super) unsafe fn run<P: LanePass<N>, const N: usize>(
         #[cfg(target_arch = "x86_64")]
         // SAFETY: SSE2 is in the baseline.
         Level::Sse2 => unsafe { run_chunk::<Two<Sse2>, P, N>(pass, chunk, first, rows, sink) },
+        #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
+        // SAFETY: the build has these registers.
+        Level::Simd128 => unsafe { run_chunk::<Two<Simd128>, P, N>(pass, chunk, first, rows, sink) },
         // SAFETY: plain arrays run anywhere.
         _ => unsafe { run_chunk::<Two<Portable>, P, N>(pass, chunk, first, rows, sink) },
     }

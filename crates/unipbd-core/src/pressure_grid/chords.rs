@@ -99,7 +99,7 @@ mod tests {
         let pose = Pose { position: Vector64::new(0.3, -0.2), angle: 0.4 };
         let star = (0..10).map(|k| {
             let radius = if k % 2 == 0 { 1.0 } else { 0.4 };
-            Vector64::from_angle(0.2 * std::f64::consts::PI * f64::from(k)) * radius
+            crate::math::direction(0.2 * std::f64::consts::PI * f64::from(k)) * radius
         });
         for shape in [Shape::rectangle(2.0, 0.5), Shape::Disc { radius: 0.7 }, Shape::Polygon(star.collect())] {
             let exact = shape.moments().area;

@@ -2,7 +2,7 @@
 
 use super::derived::Derived;
 use super::{Bodies, BodyKind, BodySpec, InverseMass, MassSpec, Pose, Rotation, Twist};
-use crate::math::Vector64;
+use crate::math::{Vector64, direction};
 use crate::shapes::Shape;
 
 /// Corners of an outline at most.
@@ -187,8 +187,7 @@ impl Bodies {
         self.place(id, pose, time);
         if self.views[k].kind == BodyKind::Kinematic {
             let script = &self.scripts[k];
-            self.velocities[k] =
-                script.motion.velocity(time).moved_to(Vector64::from_angle(pose.angle).rotate(-script.origin));
+            self.velocities[k] = script.motion.velocity(time).moved_to(direction(pose.angle).rotate(-script.origin));
             self.refresh_view(k);
         }
     }

@@ -1,7 +1,7 @@
 //! What follows from the specification of a body: mass, outline, samples, script.
 
 use super::{Body, BodyKind, BodySpec, Damping, Elasticity, MassSpec, Motion, Pose, Rotation, Twist};
-use crate::math::Vector64;
+use crate::math::{Vector64, direction};
 use crate::shapes::{Core, Samples, Shape, ShapeError};
 
 /// Response of a body to a push: its inverse mass and inertia, both 0 for an immovable body.
@@ -91,7 +91,7 @@ impl Derived {
 fn script_velocity(motion: &Motion, angle: f64, centroid: Vector64) -> Twist {
     let origin = motion.velocity(0.0);
     let turned = angle + motion.displacement(0.0).angular;
-    let arm = Vector64::from_angle(turned).rotate(centroid);
+    let arm = direction(turned).rotate(centroid);
     Twist { linear: origin.at(arm), angular: origin.angular }
 }
 

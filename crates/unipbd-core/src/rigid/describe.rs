@@ -5,7 +5,7 @@ use super::specification::Damping;
 use super::{
     Bodies, BodySpec, CollisionFilter, Elasticity, MassSpec, Motion, Pose, Repeat, Rotation, Surface, Twist, Waypoint,
 };
-use crate::math::Vector64;
+use crate::math::{Vector64, direction};
 use crate::scene::{
     BodyDescription, BodySolver, JointDescription, JointRule, MotionDescription, RotationRule, Slip, Station,
 };
@@ -107,7 +107,7 @@ pub(crate) fn joint(description: &JointDescription, bodies: &Bodies) -> Option<J
         JointRule::Rope => rod(DistanceRule::AtMost),
         JointRule::Weld => JointKind::Weld { angle },
         JointRule::Slider => JointKind::Slider {
-            axis: Vector64::from_angle(-other_pose.angle)
+            axis: direction(-other_pose.angle)
                 .rotate(Vector64::from(description.axis.unwrap_or([1.0, 0.0])).normalize()),
             angle,
             motor: description.motor_speed.map(|speed| motor(speed, description.motor_force)),

@@ -24,7 +24,7 @@ pub(crate) use query::{Outline, rectangle as box_outline};
 pub use specification::{BodySpec, CollisionFilter, Damping, Elasticity, MassSpec, Rotation, Surface};
 pub use wall::{Boundary, Wall};
 
-use crate::math::Vector64;
+use crate::math::{Vector64, direction};
 
 /// Place and orientation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
@@ -38,12 +38,12 @@ pub struct Pose {
 impl Pose {
     /// Body coordinates to world coordinates.
     pub fn apply(&self, point: Vector64) -> Vector64 {
-        self.position + Vector64::from_angle(self.angle).rotate(point)
+        self.position + direction(self.angle).rotate(point)
     }
 
     /// World coordinates to body coordinates.
     pub fn apply_inverse(&self, point: Vector64) -> Vector64 {
-        Vector64::from_angle(-self.angle).rotate(point - self.position)
+        direction(-self.angle).rotate(point - self.position)
     }
 }
 

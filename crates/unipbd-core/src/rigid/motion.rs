@@ -85,7 +85,7 @@ impl Motion {
             Motion::Still => Twist::ZERO,
             Motion::Steady { velocity, spin } => Twist { linear: *velocity * time, angular: spin * time },
             Motion::Oscillate { amplitude, swing, frequency, phase } => {
-                let wave = (TAU * frequency * time + phase).sin();
+                let wave = libm::sin(TAU * frequency * time + phase);
                 Twist { linear: *amplitude * wave, angular: swing * wave }
             }
             Motion::Path { waypoints, repeat } => along_path(waypoints, *repeat, time).0,
@@ -98,7 +98,7 @@ impl Motion {
             Motion::Still => Twist::ZERO,
             Motion::Steady { velocity, spin } => Twist { linear: *velocity, angular: *spin },
             Motion::Oscillate { amplitude, swing, frequency, phase } => {
-                let rate = TAU * frequency * (TAU * frequency * time + phase).cos();
+                let rate = TAU * frequency * libm::cos(TAU * frequency * time + phase);
                 Twist { linear: *amplitude * rate, angular: swing * rate }
             }
             Motion::Path { waypoints, repeat } => along_path(waypoints, *repeat, time).1,

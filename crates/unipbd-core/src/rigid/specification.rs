@@ -129,12 +129,12 @@ impl Damping {
         let mut moved = velocity.scaled(dt);
         let mut push = dt * dt;
         if self.linear > 0.0 {
-            let kept = (-self.linear * dt).exp();
+            let kept = libm::exp(-self.linear * dt);
             moved.linear *= kept;
-            push = dt * -(-self.linear * dt).exp_m1() / self.linear;
+            push = dt * -libm::expm1(-self.linear * dt) / self.linear;
         }
         if self.angular > 0.0 {
-            moved.angular *= (-self.angular * dt).exp();
+            moved.angular *= libm::exp(-self.angular * dt);
         }
         moved.linear += pull * push;
         moved

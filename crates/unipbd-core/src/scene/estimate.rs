@@ -156,7 +156,7 @@ fn automatic_substeps(scene: &Scene) -> u32 {
 }
 
 fn largest_speed(scene: &Scene) -> f64 {
-    let speed = |velocity: [f64; 2]| velocity[0].hypot(velocity[1]);
+    let speed = |velocity: [f64; 2]| libm::hypot(velocity[0], velocity[1]);
     let blocks = scene.block.iter().map(|block| speed(block.velocity));
     let discs = scene.disc.iter().map(|disc| speed(disc.velocity));
     let sheath = |emitter: &Emitter| emitter.sheath.as_ref().and_then(|sheath| sheath.speed).unwrap_or(0.0);
@@ -175,7 +175,7 @@ struct Layer {
 /// lighter one [m^2/s^2]. Gas has no weight of its own.
 fn pressure_over_density(scene: &Scene) -> f64 {
     let [x, y] = scene.gravity;
-    let strength = x.hypot(y);
+    let strength = libm::hypot(x, y);
     if strength == 0.0 {
         return 0.0;
     }

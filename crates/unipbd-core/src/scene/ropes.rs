@@ -93,7 +93,7 @@ impl Held {
 impl Rope {
     /// Length of the whole rope [m].
     pub(crate) fn full_length(&self) -> f64 {
-        let distance = (self.to[0] - self.from[0]).hypot(self.to[1] - self.from[1]);
+        let distance = libm::hypot(self.to[0] - self.from[0], self.to[1] - self.from[1]);
         self.length.unwrap_or(distance)
     }
 

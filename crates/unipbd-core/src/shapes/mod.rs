@@ -12,7 +12,7 @@ pub use polygon::Moments;
 pub(crate) use polygon::{edges, first_crossing, nearest as nearest_on_polygon};
 pub use sampling::Samples;
 
-use crate::math::Vector64;
+use crate::math::{Vector64, direction};
 use std::f64::consts::{PI, TAU};
 
 /// The outline of a solid, in its own coordinates.
@@ -72,7 +72,7 @@ impl Shape {
 
     /// A regular polygon centred on the origin, the first corner on the x axis.
     pub fn regular(corners: usize, circumradius: f64) -> Shape {
-        let corner = |k: usize| Vector64::from_angle(TAU * k as f64 / corners as f64) * circumradius;
+        let corner = |k: usize| direction(TAU * k as f64 / corners as f64) * circumradius;
         Shape::Polygon((0..corners).map(corner).collect())
     }
 

@@ -11,6 +11,8 @@ mod number;
 #[cfg(not(feature = "f64"))]
 pub(crate) mod portable;
 pub(crate) mod space;
+#[cfg(all(target_arch = "wasm32", target_feature = "simd128", not(feature = "f64")))]
+pub(crate) mod wasm;
 #[cfg(all(target_arch = "x86_64", not(feature = "f64")))]
 pub(crate) mod x86;
 
@@ -52,6 +54,8 @@ pub enum Level {
     Portable,
     /// Two vectors of four lanes; every x86-64 has it.
     Sse2,
+    /// Two vectors of four lanes, in WebAssembly that was built with them.
+    Simd128,
     /// One vector of eight lanes.
     Avx2,
     /// One vector of sixteen lanes: eight rows by two columns of the list.
@@ -61,7 +65,7 @@ pub enum Level {
 impl Level {
     /// The levels this machine can run, slowest first.
     pub fn available() -> Vec<Level> {
-        let all = [Level::Scalar, Level::Portable, Level::Sse2, Level::Avx2, Level::Avx512];
+        let all = [Level::Scalar, Level::Portable, Level::Simd128, Level::Sse2, Level::Avx2, Level::Avx512];
         all.into_iter().filter(|level| level.runs_here()).collect()
     }
 
@@ -71,7 +75,7 @@ impl Level {
     }
 
     fn fastest() -> Level {
-        let fastest_first = [Level::Avx512, Level::Avx2, Level::Sse2, Level::Portable];
+        let fastest_first = [Level::Avx512, Level::Avx2, Level::Sse2, Level::Simd128, Level::Portable];
         fastest_first.into_iter().find(|level| level.runs_here()).unwrap_or(Level::Scalar)
     }
 
@@ -81,6 +85,7 @@ impl Level {
             Level::Scalar => "scalar",
             Level::Portable => "portable",
             Level::Sse2 => "sse2",
+            Level::Simd128 => "simd128",
             Level::Avx2 => "avx2",
             Level::Avx512 => "avx512",
         }
@@ -90,6 +95,10 @@ impl Level {
         match self {
             Level::Scalar => true,
             Level::Portable => cfg!(not(feature = "f64")),
+            // A module is checked as a whole before it runs: what it was built with is there.
+            Level::Simd128 => {
+                cfg!(all(target_arch = "wasm32", target_feature = "simd128", not(feature = "f64")))
+            }
             #[cfg(all(target_arch = "x86_64", not(feature = "f64")))]
             Level::Sse2 => true,
             #[cfg(all(target_arch = "x86_64", not(feature = "f64")))]

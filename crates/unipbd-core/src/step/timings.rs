@@ -1,4 +1,6 @@
-use std::time::{Duration, Instant};
+use std::time::Duration;
+#[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
+use std::time::Instant;
 
 use super::Stage;
 
@@ -11,9 +13,9 @@ pub(crate) struct Timings {
 impl Timings {
     /// Runs `work` and adds its time to the name of the stage.
     pub fn time<T>(&mut self, stage: Stage, work: impl FnOnce() -> T) -> T {
-        let begin = Instant::now();
+        let stopwatch = Stopwatch::start();
         let result = work();
-        self.book(stage.name(), begin.elapsed());
+        self.book(stage.name(), stopwatch.elapsed());
         result
     }
 
@@ -27,5 +29,33 @@ impl Timings {
     /// Time by stage, in the order in which they first ran.
     pub fn spent(&self) -> &[(&'static str, Duration)] {
         &self.spent
+    }
+}
+
+/// Measures from its start. A bare WebAssembly module has no clock: there all times are zero.
+struct Stopwatch {
+    #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
+    begin: Instant,
+}
+
+impl Stopwatch {
+    #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
+    fn start() -> Self {
+        Stopwatch { begin: Instant::now() }
+    }
+
+    #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
+    fn elapsed(&self) -> Duration {
+        self.begin.elapsed()
+    }
+
+    #[cfg(all(target_family = "wasm", target_os = "unknown"))]
+    fn start() -> Self {
+        Stopwatch {}
+    }
+
+    #[cfg(all(target_family = "wasm", target_os = "unknown"))]
+    fn elapsed(&self) -> Duration {
+        Duration::ZERO
     }
 }

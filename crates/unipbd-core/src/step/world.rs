@@ -109,7 +109,7 @@ pub(crate) struct Push {
 impl Push {
     /// The root mean square of the whole [m/s^2].
     pub fn size(&self) -> f64 {
-        self.mean.length().hypot(self.spread)
+        libm::hypot(self.mean.length(), self.spread)
     }
 }
 

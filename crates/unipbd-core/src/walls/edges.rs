@@ -51,8 +51,8 @@ impl EdgeTables {
             let (mut flow, mut line) = (0.0, 0.0);
             for column in 1..NODES {
                 let (from, to) = (step * (column - 1) as f64, step * column as f64);
-                flow += simpson(from, to, |s| distance * field(&within, radius, distance.hypot(s)));
-                line += simpson(from, to, |s| f64::from(kernel.value(real(distance.hypot(s)))));
+                flow += simpson(from, to, |s| distance * field(&within, radius, libm::hypot(distance, s)));
+                line += simpson(from, to, |s| f64::from(kernel.value(real(libm::hypot(distance, s)))));
                 nodes[row * NODES + column] = [real(flow), real(line)];
             }
         }

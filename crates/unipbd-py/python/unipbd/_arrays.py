@@ -53,6 +53,8 @@ def pairs(values: npt.ArrayLike, count: int, what: str, error: type[Exception]) 
 
 def pair(values: npt.ArrayLike, what: str, error: type[Exception]) -> list[float]:
     """One vector."""
+    if isinstance(values, tuple) and len(values) == 2 and all(isinstance(value, float) for value in values):
+        return [float(value) for value in values]
     array = numbers(values, what, error)
     if array.shape != (2,):
         raise error(f"{what} must have shape (2,), not {array.shape}")

@@ -91,6 +91,22 @@ class Batch(Sequence[Simulation]):
                 self._worlds[number]._tell()
         return None
 
+    def begin(self, number: int) -> Callable[[], None]:
+        """Starts a frame of one world and returns at once: others can be edited and looked at meanwhile. The world is
+        busy until what this returns is called: that waits, and raises the `SolverError` of a world that diverged."""
+        world = self._worlds[number]
+        if _needs_python(world) or self.threads == 1:
+            return world.step
+        ticket = self._pool.begin(world._native)
+
+        def finish() -> None:
+            try:
+                ticket.wait()
+            finally:
+                world._tell()
+
+        return finish
+
     @property
     def threads(self) -> int:
         """Most threads in use."""

@@ -37,9 +37,10 @@ class BodyEdit:
     def __init__(self, name: str, number: int, pose: Doubles, velocity: Doubles) -> None:
         self._name = name
         self._number = number
-        self._position = fixed(np.array(pose[:2]))
+        # Views of arrays that nobody can write to.
+        self._position = pose[:2]
         self._angle = float(pose[2])
-        self._velocity = fixed(np.array(velocity[:2]))
+        self._velocity = velocity[:2]
         self._angular_velocity = float(velocity[2])
         self._changed = False
         self._moved = False

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from types import TracebackType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import numpy.typing as npt
 
+from . import _native
 from ._arrays import Doubles, Ids, fixed, numbers, pair, pairs, plain, points
 from ._body_edit import BodyEdit
 from ._errors import EditError
@@ -94,26 +96,12 @@ class Edit:
         self._open = False
 
     def __enter__(self) -> Edit:
-        """Notes the state as it is; the changes are made at the end of the block."""
-        simulation = self._simulation
-        self._ids: Ids = simulation.ids
-        self._moment = (simulation.substeps, len(self._ids))
-        self.positions = Column(self, "positions", simulation.positions.astype(np.float64))
-        """Positions [m], to be set by id."""
-        self.velocities = Column(self, "velocities", simulation.velocities.astype(np.float64))
-        """Velocities [m/s], to be set by id."""
-        temperatures = simulation.temperatures
-        self._temperatures = (
-            None if temperatures is None else Column(self, "temperatures", temperatures.astype(np.float64))
-        )
-        roster = zip(simulation.bodies.values(), simulation.body_poses, simulation.body_velocities, strict=True)
-        self.bodies = {
-            body.name: BodyEdit(body.name, body._index, pose, velocity) for body, pose, velocity in roster
-        }
-        """Rigid bodies by name, to set their ``velocity``, ``angular_velocity``, ``position`` and ``angle``, to
-        ``push`` them, and to ``set`` their properties."""
+        """Opens the edit; what it does not touch is not copied. The changes are made at the end of the block."""
+        for name in ("ids", "positions", "velocities", "_temperatures", "bodies", "_free"):
+            self.__dict__.pop(name, None)
+        native = self._simulation._native
+        self._moment = (native.substeps_done, native.count)
         self._world: list[dict[str, Any]] = []
-        self._free = simulation.phases != Phase.RIGID
         self._motions: list[tuple[str, list[int], str]] = []
         self._removed: set[int] = set()
         self._added: list[dict[str, Any]] = []
@@ -122,6 +110,26 @@ class Edit:
         """Ids of the particles that were added, after the block."""
         return self
 
+    @cached_property
+    def ids(self) -> Ids:
+        """Ids before the edit, in ascending order, uint32, shape (N,)."""
+        return self._simulation.ids
+
+    @cached_property
+    def positions(self) -> Column:
+        """Positions [m], to be set by id."""
+        return Column(self, "positions", self._simulation.positions.astype(np.float64))
+
+    @cached_property
+    def velocities(self) -> Column:
+        """Velocities [m/s], to be set by id."""
+        return Column(self, "velocities", self._simulation.velocities.astype(np.float64))
+
+    @cached_property
+    def _temperatures(self) -> Column | None:
+        values = self._simulation.temperatures
+        return None if values is None else Column(self, "temperatures", values.astype(np.float64))
+
     @property
     def temperatures(self) -> Column:
         """Temperatures, to be set by id. Raises `EditError` in a scene without gas."""
@@ -129,14 +137,22 @@ class Edit:
             raise EditError("the scene has no gas, so no temperatures")
         return self._temperatures
 
-    @property
-    def ids(self) -> Ids:
-        """Ids before the edit, in ascending order, uint32, shape (N,)."""
-        return self._ids
+    @cached_property
+    def bodies(self) -> dict[str, BodyEdit]:
+        """Rigid bodies by name, to set their ``velocity``, ``angular_velocity``, ``position`` and ``angle``, to
+        ``push`` them, and to ``set`` their properties."""
+        simulation = self._simulation
+        rows = zip(_native.body_roster(simulation._native), simulation.body_poses, simulation.body_velocities, strict=True)
+        return {name: BodyEdit(name, number, pose, velocity) for (number, name), pose, velocity in rows}
+
+    @cached_property
+    def _free(self) -> npt.NDArray[np.bool_]:
+        """Particles that are no samples of a body."""
+        return np.not_equal(self._simulation.phases, Phase.RIGID)
 
     def remove(self, which: Any) -> None:
         """Removes particles: an array of ids, or a boolean mask over all of them."""
-        self._removed.update(self._ids[self._rows(which)].tolist())
+        self._removed.update(self.ids[self._rows(which)].tolist())
 
     def add(
         self,
@@ -225,11 +241,11 @@ class Edit:
 
     def script(self, which: Any) -> None:
         """From now on only their velocity moves these particles, and nothing but you changes it."""
-        self._motions.append(("motion", self._ids[self._rows(which)].tolist(), "scripted"))
+        self._motions.append(("motion", self.ids[self._rows(which)].tolist(), "scripted"))
 
     def free(self, which: Any) -> None:
         """Lets particles go that a script has moved."""
-        self._motions.append(("motion", self._ids[self._rows(which)].tolist(), "free"))
+        self._motions.append(("motion", self.ids[self._rows(which)].tolist(), "free"))
 
     def _rows(self, key: Any) -> npt.NDArray[np.intp]:
         """Rows of the columns of this edit that a key means."""
@@ -242,8 +258,8 @@ class Edit:
             return np.flatnonzero(self._free)
         array = np.asarray(key)
         if array.dtype == bool:
-            if array.shape != self._ids.shape:
-                raise EditError(f"a mask must have shape {self._ids.shape}, not {array.shape}")
+            if array.shape != self.ids.shape:
+                raise EditError(f"a mask must have shape {self.ids.shape}, not {array.shape}")
             return np.flatnonzero(array)
         try:
             wanted = np.asarray(id_list(key), dtype=np.int64)
@@ -251,23 +267,21 @@ class Edit:
             raise EditError(str(error)) from None
         if len(np.unique(wanted)) != len(wanted):
             raise EditError("an id is given twice")
-        rows = np.searchsorted(self._ids, wanted)
+        rows = np.searchsorted(self.ids, wanted)
         found = np.zeros(len(wanted), dtype=bool)
-        inside = rows < len(self._ids)
-        found[inside] = self._ids[rows[inside]] == wanted[inside]
+        inside = rows < len(self.ids)
+        found[inside] = self.ids[rows[inside]] == wanted[inside]
         if not found.all():
             raise EditError(f"there is no particle with id {wanted[~found][0]}")
         return rows
 
     def _changes(self) -> list[tuple[str, list[int], Any]]:
-        columns = [self.positions, self.velocities]
-        if self._temperatures is not None:
-            columns.append(self._temperatures)
         changes: list[tuple[str, list[int], Any]] = []
-        for column in columns:
-            if column._changed.any():
+        for name in ("positions", "velocities", "_temperatures"):
+            column: Column | None = self.__dict__.get(name)
+            if column is not None and column._changed.any():
                 values = np.ascontiguousarray(column._values[column._changed])
-                changes.append((column._name, self._ids[column._changed].tolist(), values))
+                changes.append((column._name, self.ids[column._changed].tolist(), values))
         return changes + list(self._motions)
 
     def __exit__(
@@ -280,12 +294,10 @@ class Edit:
         native = self._simulation._native
         if self._moment != (native.substeps_done, native.count):
             raise EditError("the simulation was stepped or edited within the edit")
-        bodies = [
-            (body._number, body.velocity.tolist(), body.angular_velocity)
-            for body in self.bodies.values()
-            if body._changed
-        ]
-        world = [change for body in self.bodies.values() for change in body._changes()] + self._world
+        edits: dict[str, BodyEdit] = self.__dict__.get("bodies", {})
+        changed = (body for body in edits.values() if body._changed)
+        bodies = [(body._number, body.velocity.tolist(), body.angular_velocity) for body in changed]
+        world = [change for body in edits.values() for change in body._changes()] + self._world
         first, last = native.apply(self._changes(), sorted(self._removed), self._added, bodies, world)
         self.added = fixed(np.arange(first, last, dtype=np.uint32))
 

@@ -158,7 +158,14 @@ class Observable(World):
     def wall_particles(self, layers: int = 1) -> Floats:
         """Walls as particles, one spacing apart, the first layer half a spacing behind the surface [m], float32, shape
         (W, 2): what learned simulators want beside `positions`. See `unipbd.datasets.wall_particles`."""
-        return fixed(wall_particles(self._scene, layers).positions.astype(np.float32))
+        kept: dict[int, Floats] = self.__dict__.setdefault("_sampled_walls", {})
+        if layers not in kept:
+            kept[layers] = fixed(wall_particles(self._scene, layers).positions.astype(np.float32))
+        return kept[layers]
+
+    def positions_with_walls(self, layers: int = 1) -> Floats:
+        """`positions`, and behind them `wall_particles` [m], float32, shape (N + W, 2)."""
+        return fixed(np.concatenate([self.positions, self.wall_particles(layers)]))
 
     # -- numbers -------------------------------------------------------------------------------
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+import time
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -12,6 +13,10 @@ from ._toml import value
 
 EXIT_CODES = """exit codes: 0 done, 1 a file, 2 wrong arguments, 3 a mistake in a file, 4 a run, 5 a figure out of its band,
 130 interrupted (the same command goes on)."""
+
+
+BETWEEN = 0.2
+"""Least time between two texts on the line of progress [s]."""
 
 
 def guarded(work: Callable[[Sequence[str]], int], arguments: Sequence[str] | None) -> int:
@@ -25,7 +30,7 @@ def guarded(work: Callable[[Sequence[str]], int], arguments: Sequence[str] | Non
         print(f"error: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        print("interrupted: the same command goes on from here", file=sys.stderr)
+        print("\ninterrupted: the same command goes on from here", file=sys.stderr)
         return 130
 
 
@@ -55,9 +60,18 @@ def change(text: str) -> tuple[str, Any]:
     return key.strip(), value(written.strip())
 
 
-def show(text: str) -> None:
-    """Progress on one line."""
-    print(f"\r{text}   ", end="", file=sys.stderr, flush=True)
+class Line:
+    """Progress on one line, written anew a few times a second."""
+
+    def __init__(self) -> None:
+        self._shown = 0.0
+
+    def show(self, text: str, last: bool) -> None:
+        """Shows how far it has come; the `last` text in any case."""
+        now = time.monotonic()
+        if last or now - self._shown > BETWEEN:
+            self._shown = now
+            print(f"\r{text}   ", end="\n" if last else "", file=sys.stderr, flush=True)
 
 
 def size_text(count: float) -> str:
@@ -72,5 +86,5 @@ def size_text(count: float) -> str:
 def time_text(seconds: float) -> str:
     """A time."""
     if seconds < 120.0:
-        return f"{seconds:.0f} s"
+        return f"{seconds:.1f} s" if seconds < 10.0 else f"{seconds:.0f} s"
     return f"{seconds / 60.0:.0f} min" if seconds < 7200.0 else f"{seconds / 3600.0:.1f} h"

@@ -100,22 +100,21 @@ def _depth_of_box(point: Points, box: Mapping[str, Any]) -> float:
 
 
 def _axis(low: float, high: float, dx: float) -> Points:
-    """A lattice between two walls, half a spacing from the lower one."""
-    count = max(1, math.floor((high - low) / dx + 0.51))
-    places: Points = np.asarray(low + (np.arange(count) + 0.5) * dx, dtype=np.float64)
+    """A row of points between two walls, half a step from each: as near to a spacing apart as a whole number of them is."""
+    count = max(1, round((high - low) / dx))
+    places: Points = np.asarray(low + (np.arange(count) + 0.5) * ((high - low) / count), dtype=np.float64)
     return places
 
 
 def _ring(tank: Mapping[str, Any], dx: float, layers: int) -> Points:
     """The lattice outside the closed sides of a tank."""
     (left, low), (right, high) = tank["min"], tank["max"]
-    xs, ys = _axis(left, right, dx), _axis(low, high, dx)
     outer = (np.arange(layers) + 0.5) * dx
-    all_x = np.concatenate([left - outer[::-1], xs, xs[-1] + 0.5 * dx + outer])
-    all_y = np.concatenate([low - outer[::-1], ys, ys[-1] + 0.5 * dx + outer])
+    all_x = np.concatenate([left - outer[::-1], _axis(left, right, dx), right + outer])
+    all_y = np.concatenate([low - outer[::-1], _axis(low, high, dx), high + outer])
     grid = np.stack(np.meshgrid(all_x, all_y, indexing="ij"), axis=-1).reshape(-1, 2)
-    side = {"left": grid[:, 0] < left, "right": grid[:, 0] > xs[-1] + 0.25 * dx,
-            "bottom": grid[:, 1] < low, "top": grid[:, 1] > ys[-1] + 0.25 * dx}
+    side = {"left": grid[:, 0] < left, "right": grid[:, 0] > right,
+            "bottom": grid[:, 1] < low, "top": grid[:, 1] > high}
     closed = [name for name in _SIDES if name not in tank.get("open", [])]
     opened = [name for name in _SIDES if name not in closed]
     kept = np.any([side[name] for name in closed] or [np.zeros(len(grid), dtype=bool)], axis=0)
@@ -144,11 +143,12 @@ def _row(
     places = (corners - point) @ along
     ends = abs(along) @ np.array(periodic, dtype=np.float64) > 0.5
     extra = 0.0 if ends else round(reach) * dx
-    row = _axis(places.min() - extra, places.max() + extra, dx)
+    first, last = float(places.min() - extra), float(places.max() + extra)
+    row = _axis(first, last, dx)
     depth = (np.arange(layers) + 0.5) * dx
     points = point + row[None, :, None] * along - depth[:, None, None] * normal
     velocity = [float(part) for part in wall.get("velocity", [0.0, 0.0])]
-    return points.reshape(-1, 2), velocity, len(row) * dx if any(velocity) else 0.0
+    return points.reshape(-1, 2), velocity, last - first if any(velocity) else 0.0
 
 
 def _periodic(data: Mapping[str, Any]) -> list[bool]:
@@ -180,4 +180,5 @@ def bounds(scene: Scene, walls: Walls) -> list[list[float]]:
         free = ~np.array(_periodic(scene.to_dict()))
         box[0, free] = np.minimum(box[0], outer[0])[free]
         box[1, free] = np.maximum(box[1], outer[1])[free]
-    return [[float(box[0, axis]), float(box[1, axis])] for axis in range(2)]
+    # Without what binary fractions leave of sums such as 2.0 + 0.06.
+    return [[round(float(box[0, axis]), 12), round(float(box[1, axis]), 12)] for axis in range(2)]

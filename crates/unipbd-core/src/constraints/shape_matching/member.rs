@@ -96,7 +96,7 @@ impl Member {
 
     /// Part of its wobble that it loses in a substep of this length [s].
     pub(super) fn damped(&self, dt: f64) -> f64 {
-        1.0 - (1.0 - self.damping).powf(dt / DAMPING_TIME)
+        1.0 - libm::pow(1.0 - self.damping, dt / DAMPING_TIME)
     }
 
     /// Displaces the samples of a soft body as their springs do in a substep of this length [s] where nothing else moves

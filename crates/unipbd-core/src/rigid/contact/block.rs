@@ -6,7 +6,7 @@
 
 use super::joint::{Joint, JointKind, Limits, Motor};
 use super::rows::{Row, solve};
-use crate::math::Vector64;
+use crate::math::{Vector64, direction};
 use crate::rigid::{InverseMass, Pose, Twist};
 
 /// Arms of the two anchors.
@@ -161,7 +161,7 @@ impl Block {
 
     /// Position-only pushes that remove half of the drift at these poses.
     pub fn separate(&self, joint: &Joint, poses: (Pose, Pose), masses: &(InverseMass, InverseMass)) -> (Twist, Twist) {
-        let arm = |pose: Pose, anchor: Vector64| Vector64::from_angle(pose.angle).rotate(anchor);
+        let arm = |pose: Pose, anchor: Vector64| direction(pose.angle).rotate(anchor);
         let arms = (arm(poses.0, joint.anchor), arm(poses.1, joint.other_anchor));
         let offset = (poses.0.position + arms.0) - (poses.1.position + arms.1);
         let Some(measured) = measure(joint, poses, (arms, arms), offset) else { return (Twist::ZERO, Twist::ZERO) };
@@ -233,7 +233,7 @@ fn measure(joint: &Joint, (a, b): (Pose, Pose), (arms, middle): (Arms, Arms), of
             value: 0.0,
         },
         JointKind::Slider { axis, angle, .. } => {
-            let along = Vector64::from_angle(b.angle).rotate(axis);
+            let along = direction(b.angle).rotate(axis);
             // The second body is pushed where the first anchor is, so that no couple arises.
             let both = (arms.0, arms.1 + offset);
             let row = |along| Row::point(along, both, both);

@@ -1,7 +1,7 @@
 //! Poses of bodies at the start of a substep, with their rotations evaluated.
 
 use super::bounds::NONE;
-use crate::math::Vector64;
+use crate::math::{Vector64, direction};
 use crate::rigid::Bodies;
 
 /// The coordinates of a body.
@@ -43,7 +43,7 @@ impl Frames {
         for (id, frame) in self.0.iter_mut().enumerate() {
             let pose = &bodies.poses[id];
             if frame.angle != pose.angle {
-                (frame.angle, frame.rotation) = (pose.angle, Vector64::from_angle(pose.angle));
+                (frame.angle, frame.rotation) = (pose.angle, direction(pose.angle));
             }
             frame.position = pose.position;
             frame.pull = if bodies.is_active(id) { bodies.pull(id, gravity) } else { Vector64::ZERO };

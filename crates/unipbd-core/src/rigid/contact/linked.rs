@@ -10,7 +10,7 @@ use super::block::Block;
 use super::bounds::NONE;
 use super::joint::{DistanceRule, Joint, JointKind, Motor, Strength};
 use super::manifold::entry;
-use crate::math::Vector64;
+use crate::math::{Vector64, direction};
 use crate::rigid::{InverseMass, Pose, Twist};
 
 /// A joint with its state in the solver.
@@ -123,7 +123,7 @@ impl Linked {
 
     /// Computes anchors and arms at these poses of the bodies.
     fn place(&mut self, a: Pose, b: Pose) {
-        let arm = |pose: Pose, anchor: Vector64| Vector64::from_angle(pose.angle).rotate(anchor);
+        let arm = |pose: Pose, anchor: Vector64| direction(pose.angle).rotate(anchor);
         self.arms = (arm(a, self.joint.anchor), arm(b, self.joint.other_anchor));
         self.middle = self.arms;
         self.offset = (a.position + self.arms.0) - (b.position + self.arms.1);
@@ -135,7 +135,7 @@ impl Linked {
         let (of_a, of_b) = (entry(poses, a), entry(poses, b));
         self.place(of_a, of_b);
         let half = |pose: Pose, body: u32| pose.angle + 0.5 * entry(displacements, body).angular;
-        let turned = |angle: f64, anchor: Vector64| Vector64::from_angle(angle).rotate(anchor);
+        let turned = |angle: f64, anchor: Vector64| direction(angle).rotate(anchor);
         self.middle = (turned(half(of_a, a), self.joint.anchor), turned(half(of_b, b), self.joint.other_anchor));
         (self.split, self.dt) = ((entry(split, a), entry(split, b)), dt);
         self.impulse *= scale;

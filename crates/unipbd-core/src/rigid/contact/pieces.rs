@@ -3,7 +3,7 @@
 use super::bounds::{Bounds, HIDDEN, NONE};
 use super::exposure::{self, Solid};
 use super::frames::Frames;
-use crate::math::Vector64;
+use crate::math::{Vector64, direction};
 use crate::rigid::{Bodies, BodyKind, CollisionFilter, Pose, Surface};
 use crate::rigid::{Boundary, Wall};
 use crate::scene::FrictionRule;
@@ -177,7 +177,7 @@ impl Pieces {
     fn place_last(&mut self, pose: &Pose) {
         for index in self.bounds.len()..self.all.len() {
             self.bounds.push(Bounds::EMPTY);
-            self.place(index, pose, Vector64::from_angle(pose.angle));
+            self.place(index, pose, direction(pose.angle));
         }
     }
 
@@ -199,7 +199,7 @@ impl Pieces {
             // Saved before the first substep.
             for index in 0..taken.all.len() {
                 if let Some(pose) = bodies.poses.get(taken.all[index].body as usize) {
-                    taken.place(index, pose, Vector64::from_angle(pose.angle));
+                    taken.place(index, pose, direction(pose.angle));
                 }
             }
             return Some(taken);

@@ -72,7 +72,7 @@ fn beyond(checker: &mut Checker, path: KeyPath, value: f64, (least, most): (f64,
 }
 
 fn strength([x, y]: [f64; 2]) -> f64 {
-    x.hypot(y)
+    libm::hypot(x, y)
 }
 
 /// Notes an acceleration that takes a particle at rest too far in one frame.

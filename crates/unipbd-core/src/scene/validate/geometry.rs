@@ -63,7 +63,7 @@ impl Shape {
         let [x, y] = emitter.position;
         let sheath = emitter.sheath.as_ref().map_or(0.0, |sheath| sheath.thickness);
         let half = (emitter.width * 0.5 + sheath - spacing * 0.5).max(0.0);
-        let length = emitter.direction[0].hypot(emitter.direction[1]);
+        let length = libm::hypot(emitter.direction[0], emitter.direction[1]);
         let across = [-emitter.direction[1] / length * half, emitter.direction[0] / length * half];
         let ends = [[x - across[0], y - across[1]], [x + across[0], y + across[1]]];
         let sane = emitter.width > 0.0 && sheath >= 0.0 && ends.as_flattened().iter().all(|value| value.is_finite());
@@ -91,7 +91,7 @@ impl Shape {
             }
             Shape::Disc { center, radius } => {
                 let gap = [0, 1].map(|axis| (min[axis] - center[axis]).max(center[axis] - max[axis]).max(0.0));
-                gap[0].hypot(gap[1]) < radius
+                libm::hypot(gap[0], gap[1]) < radius
             }
             Shape::Segment(ends) => segment_meets_box(ends, min, max),
         }

@@ -46,7 +46,7 @@ impl Lattice {
         let corners = [[0.0, 0.0], [1.0, 0.0], [0.0, 1.0], [1.0, 1.0]]
             .map(|step: [f64; 2]| [place[0].floor() + step[0], place[1].floor() + step[1]]);
         let held = corners.into_iter().filter(|corner| self.holds(*corner));
-        let distances = held.map(|corner| (corner[0] - place[0]).hypot(corner[1] - place[1]));
+        let distances = held.map(|corner| libm::hypot(corner[0] - place[0], corner[1] - place[1]));
         let (count, nearest) = distances.fold((0, f64::INFINITY), |(count, least), next| (count + 1, least.min(next)));
         (nearest <= 0.5 + 1e-6 || count == 4).then_some(nearest * self.spacing)
     }

@@ -38,7 +38,7 @@ fn subject(source: &Source) -> String {
 
 fn behind_half_plane(checker: &Checker, source: &Source, slack: f64) -> Finding {
     for (index, wall) in checker.scene.half_plane.iter().enumerate() {
-        let length = wall.normal[0].hypot(wall.normal[1]);
+        let length = libm::hypot(wall.normal[0], wall.normal[1]);
         let into = wall.normal.map(|value| -value / length);
         let level = into[0] * wall.point[0] + into[1] * wall.point[1];
         let depth = source.shape.reach(into) - level;

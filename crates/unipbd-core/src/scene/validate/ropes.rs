@@ -20,7 +20,7 @@ pub(super) fn check(checker: &mut Checker) {
                 checker.problem(path.then("from_body"), "ties a body to itself", hint);
             }
         }
-        let distance = (rope.to[0] - rope.from[0]).hypot(rope.to[1] - rope.from[1]);
+        let distance = libm::hypot(rope.to[0] - rope.from[0], rope.to[1] - rope.from[1]);
         let length = rope.full_length();
         let hint = "make it longer, or move the ends together";
         if checker.range(path.then("length"), length, Allowed::Positive, hint) && length < distance * (1.0 - 1e-9) {

@@ -53,8 +53,8 @@ fn check_points(checker: &mut Checker, path: &KeyPath, points: &Points) {
         let message = format!("there are {given} velocities for {wanted} positions");
         checker.problem(path.then("velocities"), message, "one for each position, or one `velocity` for all");
     }
-    check_throw(checker, path.then("velocity"), points.velocity[0].hypot(points.velocity[1]));
-    let fastest = points.velocities.iter().map(|v| v[0].hypot(v[1])).fold(0.0, f64::max);
+    check_throw(checker, path.then("velocity"), libm::hypot(points.velocity[0], points.velocity[1]));
+    let fastest = points.velocities.iter().map(|v| libm::hypot(v[0], v[1])).fold(0.0, f64::max);
     check_throw(checker, path.then("velocities"), fastest);
     let smoke = checker.materials.get(points.material.as_str()).is_some_and(|known| known.phase() == Phase::Smoke);
     if smoke && points.motion == PointMotion::Scripted {
@@ -64,7 +64,7 @@ fn check_points(checker: &mut Checker, path: &KeyPath, points: &Points) {
 
 fn check_filling(checker: &mut Checker, path: &KeyPath, velocity: [f64; 2], jitter: f64) {
     checker.range(path.then("jitter"), jitter, Allowed::Between(0.0, 0.5), JITTER_HINT);
-    check_throw(checker, path.then("velocity"), velocity[0].hypot(velocity[1]));
+    check_throw(checker, path.then("velocity"), libm::hypot(velocity[0], velocity[1]));
 }
 
 fn check_emitters(checker: &mut Checker) {

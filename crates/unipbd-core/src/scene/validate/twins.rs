@@ -21,7 +21,7 @@ pub(super) fn check(checker: &mut Checker) {
     let obstacles = entries("obstacle", &scene.obstacle).map(|(path, wall)| (path, corners(wall.min, wall.max)));
     note(checker, obstacles.collect());
     let planes = entries("half_plane", &scene.half_plane).map(|(path, wall)| {
-        let length = wall.normal[0].hypot(wall.normal[1]);
+        let length = libm::hypot(wall.normal[0], wall.normal[1]);
         let [x, y] = wall.normal.map(|value| value / length);
         (path, [(1e4 * x).round() as i64, (1e4 * y).round() as i64, rounded(x * wall.point[0] + y * wall.point[1])])
     });
@@ -50,8 +50,8 @@ pub(super) fn check_bodies(checker: &mut Checker) {
         if !(size > 0.0 && size.is_finite() && meets_its_like(body)) {
             continue;
         }
-        let class = size.log2().floor();
-        let side = 0.25 * class.exp2();
+        let class = libm::log2(size).floor();
+        let side = 0.25 * libm::exp2(class);
         for place in body.places() {
             let key = (class as i32, (place.x / side).floor() as i64, (place.y / side).floor() as i64);
             let count = crowds.entry(key).or_insert(0);

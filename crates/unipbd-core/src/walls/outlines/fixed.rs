@@ -1,7 +1,7 @@
 //! Outlines that never move, as walls of a grid.
 
 use super::{Form, Moment, Outlines, Spot};
-use crate::math::{Real, Vector, Vector64, smaller, vector, wide};
+use crate::math::{Real, Vector, Vector64, direction, smaller, vector, wide};
 use crate::shapes::{Shape, edges};
 use std::f64::consts::TAU;
 
@@ -64,7 +64,7 @@ impl Spot {
             }
             Shape::Disc { radius } => {
                 let count = (TAU * radius / f64::from(piece)).ceil().max(12.0);
-                let corner = |k: f64| world(Vector64::from_angle(TAU * k / count) * *radius);
+                let corner = |k: f64| world(direction(TAU * k / count) * *radius);
                 (0..count as u32).map(f64::from).for_each(|k| visit([corner(k), corner(k + 1.0)]));
             }
         }

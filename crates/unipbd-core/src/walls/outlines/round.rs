@@ -86,10 +86,10 @@ fn flux<K: Shape>(kernel: &Kernel<K>, radius: f64, centre: f64) -> f64 {
     let reach = f64::from(kernel.radius());
     // Beyond this angle the circle is out of the kernel.
     let cosine = (centre * centre + radius * radius - reach * reach) / (2.0 * radius * centre).max(f64::MIN_POSITIVE);
-    let most = if cosine <= -1.0 { PI } else { cosine.min(1.0).acos() };
+    let most = if cosine <= -1.0 { PI } else { libm::acos(cosine.min(1.0)) };
     let on_circle = |angle: f64| {
-        let square = centre * centre + radius * radius - 2.0 * centre * radius * angle.cos();
-        f64::from(kernel.value(real(square.max(0.0).sqrt()))) * angle.cos()
+        let square = centre * centre + radius * radius - 2.0 * centre * radius * libm::cos(angle);
+        f64::from(kernel.value(real(square.max(0.0).sqrt()))) * libm::cos(angle)
     };
     let piece = most / PIECES as f64;
     let half: f64 = (0..PIECES).map(|k| simpson(piece * k as f64, piece * (k + 1) as f64, on_circle)).sum();

@@ -1,4 +1,5 @@
 use super::*;
+use crate::math::direction;
 use crate::walls::Coverage;
 
 const RADIUS: f64 = 2.5;
@@ -6,7 +7,7 @@ const RADIUS: f64 = 2.5;
 fn outline(shape: Shape, angle: f64, upheld: Option<f64>) -> Outlines {
     let mut outlines = Outlines::new(Kernel::new(RADIUS), upheld, Periodic::NONE);
     outlines.set([OutlineSpec { body: 0, shape, still: true, fixed: true }].into_iter());
-    let place = Place { position: Vector64::ZERO, axis: Vector64::from_angle(angle) };
+    let place = Place { position: Vector64::ZERO, axis: direction(angle) };
     outlines.place(|_| [place; 2]);
     outlines
 }
@@ -19,7 +20,7 @@ fn polygon(corners: &[[f64; 2]]) -> Shape {
 fn star() -> Shape {
     let corner = |k: usize| {
         let size = if k.is_multiple_of(2) { 5.0 } else { 2.0 };
-        (Vector64::from_angle(std::f64::consts::TAU * k as f64 / 10.0) * size).to_array()
+        (direction(std::f64::consts::TAU * k as f64 / 10.0) * size).to_array()
     };
     polygon(&(0..10).map(corner).collect::<Vec<_>>())
 }
@@ -91,7 +92,7 @@ fn a_long_edge_at_any_angle_is_a_wall() {
     {
         for angle in [0.0, 0.1, 0.7, 2.0, 4.0] {
             let outlines = outline(Shape::rectangle(40.0, 30.0), angle, upheld);
-            let out = vector(Vector64::from_angle(angle)).perp();
+            let out = vector(direction(angle)).perp();
             for distance in [-1.7, 0.05, 0.5, 1.3, 2.4] {
                 let (part, slope) = coverage.behind(distance);
                 let (found, gradient) = outlines.coverage(out * (15.0 + distance), Moment::End);

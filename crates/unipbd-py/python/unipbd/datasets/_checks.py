@@ -51,9 +51,10 @@ def _end(value: float | None) -> str:
 
 @dataclass(frozen=True)
 class Curve:
-    """What was measured beside what is known, for a picture."""
+    """What was measured beside what is known, for a picture: over what `axis` names."""
 
     title: str
+    axis: str
     x: Points
     measured: Points
     known_x: Points
@@ -111,7 +112,7 @@ def taylor_green(flow: Flow) -> tuple[list[Check], list[Curve]]:
     note = f"mean of {len(ratios)} trajectories, spread {np.std(ratios):.2g}"
     check = Check("fitted viscosity over the true one", float(np.mean(ratios)), 0.97, 1.03, note)
     exact = np.exp(-4.0 * viscosity * wave**2 * (time[0] - time[0][0]))
-    curve = Curve("kinetic energy over that of the start", time[0], energy[0] / energy[0][0], time[0], exact)
+    curve = Curve("kinetic energy over that of the start", "time [s]", time[0], energy[0] / energy[0][0], time[0], exact)
     return [check], [curve]
 
 
@@ -135,7 +136,8 @@ def reverse_poiseuille(flow: Flow) -> tuple[list[Check], list[Curve]]:
     largest = force * height**2 / (8.0 * viscosity)
     error = float(np.sqrt(np.mean((mean - exact) ** 2)) / np.sqrt(np.mean(exact**2)))
     note = f"largest speed {np.abs(mean).max():.4g}, exact {largest:.4g}"
-    return [Check("L2 error of the profile", error, 0.0, 0.03, note)], [Curve("velocity against y", y, mean, y, exact)]
+    curve = Curve("mean velocity along the force [m/s]", "y [m]", y, mean, y, exact)
+    return [Check("L2 error of the profile", error, 0.0, 0.03, note)], [curve]
 
 
 def lid_driven_cavity(flow: Flow) -> tuple[list[Check], list[Curve]]:
@@ -157,7 +159,7 @@ def lid_driven_cavity(flow: Flow) -> tuple[list[Check], list[Curve]]:
         high = 0.03 if abs(reynolds - 100.0) < 1.0 else None
         note = f"of the lid speed, largest {np.abs(measured - line.known).max():.3g}; Re = {reynolds:.4g}"
         checks.append(Check(f"root mean square error of {name}", error, None, high, note))
-        curves.append(Curve(name, line.places, measured, line.places, line.known))
+        curves.append(Curve(name, "place over the side", line.places, measured, line.places, line.known))
     return checks, curves
 
 
@@ -210,7 +212,8 @@ def dam_break(flow: Flow) -> tuple[list[Check], list[Curve]]:
         error, shift = _fitted(t, way[:end], known)
         errors.append(error)
         shifts.append(shift)
-        curves.append(Curve("place of the front over h", t - shift, 1.0 + way[:end], known[:, 0], known[:, 1]))
+        place = 1.0 + way[:end]
+        curves.append(Curve("place of the front over h", "t sqrt(g/h)", t - shift, place, known[:, 0], known[:, 1]))
     note = f"mean of {len(errors)} trajectories, largest {max(errors):.3g}, shift of time {np.mean(shifts):.3g} sqrt(h/g)"
     return [Check("front against Martin & Moyce", float(np.mean(errors)), 0.0, 0.05, note)], curves[:1]
 

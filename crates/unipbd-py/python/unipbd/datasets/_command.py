@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from .._options import EXIT_CODES, add_running, guarded, show, size_text, time_text
+from .._options import EXIT_CODES, Line, add_running, guarded, size_text, time_text
+from .._work import processes, share
 from ._generate import Progress, estimate, generate
 from ._recipe import Recipe
 from ._report import report
@@ -46,15 +48,17 @@ def _generate(given: Sequence[str]) -> int:
     options = _parser().parse_args(given)
     recipe = Recipe.load(options.recipe, dict(options.changes))
     if options.dry_run or not options.quiet:
-        cost = estimate(recipe)
-        print(f"{recipe.trajectories} trajectories of about {cost.particles} particles and {recipe.frames + 1} frames: "
-              f"{size_text(cost.bytes)} before compression, about {time_text(cost.seconds)} of one core", file=sys.stderr)
+        cost, number = estimate(recipe), len(share(recipe.trajectories, options.shard))
+        wall = cost.seconds * number / recipe.trajectories / processes(options.jobs, os.cpu_count() or 1)
+        part = "" if options.shard == (1, 1) else f"; this shard makes {number} of them"
+        print(f"{recipe.trajectories} trajectories of about {cost.particles} particles and {recipe.frames + 1} frames{part}: "
+              f"{size_text(cost.bytes)} before compression, about {time_text(wall)} here "
+              f"({time_text(cost.seconds)} of one core for all)", file=sys.stderr)
     if options.dry_run:
         return 0
-    progress = None if options.quiet else _show
+    line = Line()
+    progress = None if options.quiet else lambda found: line.show(_text(found), found.done == found.total)
     made = generate(recipe, options.output, options.shard, options.jobs, progress, options.keep_parts)
-    if not options.quiet:
-        print(file=sys.stderr)
     for folder in made:
         size = sum(path.stat().st_size for path in folder.iterdir())
         print(f"{folder}: {size_text(size)}")
@@ -65,10 +69,11 @@ def _generate(given: Sequence[str]) -> int:
     return 0
 
 
-def _show(progress: Progress) -> None:
+def _text(progress: Progress) -> str:
     left = "" if progress.remaining is None else f", {time_text(progress.remaining)} left"
     refused = f", {progress.refused} refused" if progress.refused else ""
-    show(f"{progress.done}/{progress.total} trajectories{refused}{left}")
+    part = f" and {progress.part:.1%} of the next" if progress.part else ""
+    return f"{progress.done}/{progress.total} trajectories{part}{refused}{left}"
 
 
 def _report(given: Sequence[str]) -> int:

@@ -16,6 +16,8 @@ from typing import Any
 import numpy as np
 
 from .. import _native
+from .._phase import SMOKE
+from .._walls import wall_particles
 from .._work import claim, processes, run_all, share, write
 from . import _gns, _lagrangebench
 from ._parts import Parts
@@ -29,12 +31,16 @@ WRITERS: dict[str, Callable[[Parts, Path], Path]] = {
 }
 
 
+BETWEEN = 1.0
+"""Least time between two messages within a trajectory [s]."""
+
+
 @dataclass(frozen=True)
 class Progress:
     """How far it has come.
 
     Attributes:
-        done, total: trajectories of this shard.
+        done, total: trajectories of this shard. part: of the present one, with one process; 0 with several.
         refused: draws that the filter did not let pass.
         elapsed: time since the start [s].
         remaining: estimate of the rest [s], None before the first trajectory.
@@ -45,6 +51,7 @@ class Progress:
     refused: int
     elapsed: float
     remaining: float | None
+    part: float = 0.0
 
 
 def generate(
@@ -66,9 +73,11 @@ def generate(
     place = Path(folder)
     indices = share(recipe.trajectories, shard)
     claim(place, "recipe.json", recipe.to_dict())
-    if (place / "manifest.json").exists():
-        return _formats(place)
     parts = place / "parts"
+    if (place / "manifest.json").exists():
+        if not keep_parts:
+            shutil.rmtree(parts, ignore_errors=True)  # where it was killed at the very end
+        return _formats(place)
     parts.mkdir(exist_ok=True)
     _run(recipe, parts, indices, jobs, progress)
     if shard != (1, 1):
@@ -100,18 +109,48 @@ def _run(
     jobs = processes(jobs, len(wanted))
     # Where there are fewer runs than processors each has several: threads change no result.
     threads = max(1, (os.cpu_count() or 1) // jobs) if len(wanted) == jobs else 1
-    started, done, refused = time.monotonic(), len(indices) - len(wanted), 0
-    work = functools.partial(_numbered, recipe, parts, threads)
+    watch = _Watch(progress, len(indices), len(wanted))
+    # The part of a trajectory that is done is known in this process alone.
+    work = functools.partial(_numbered, recipe, parts, threads, watch.within if jobs == 1 else None)
     for record in run_all(work, wanted, jobs):
-        done, refused = done + 1, refused + len(record["refused"])
-        elapsed = time.monotonic() - started
-        left = elapsed / (done - len(indices) + len(wanted)) * (len(indices) - done)
-        if progress is not None:
-            progress(Progress(done, len(indices), refused, elapsed, left))
+        watch.finished(len(record["refused"]))
 
 
-def _numbered(recipe: Recipe, parts: Path, threads: int, index: int) -> dict[str, Any]:
-    return run_trajectory(recipe, index, parts, threads)
+class _Watch:
+    """Tells how far the trajectories of a shard have come."""
+
+    def __init__(self, tell: Callable[[Progress], object] | None, total: int, wanted: int) -> None:
+        self.tell, self.total = tell, total
+        self.done, self.refused = total - wanted, 0
+        # Trajectories that were there already; the present one as well, where it goes on from a state.
+        self.there, self.begun = float(total - wanted), False
+        self.started = self.told = time.monotonic()
+
+    def finished(self, refused: int) -> None:
+        """One more is done, after this many draws that were refused."""
+        self.done, self.refused, self.begun = self.done + 1, self.refused + refused, False
+        self._say(0.0)
+
+    def within(self, part: float) -> None:
+        """This part of the present one is done."""
+        if not self.begun:
+            self.begun, self.there = True, self.there + part
+        if time.monotonic() - self.told > BETWEEN:
+            self._say(part)
+
+    def _say(self, part: float) -> None:
+        self.told = time.monotonic()
+        elapsed = self.told - self.started
+        new = self.done + part - self.there
+        left = elapsed / new * (self.total - self.done - part) if new > 0.0 else None
+        if self.tell is not None:
+            self.tell(Progress(self.done, self.total, self.refused, elapsed, left, part))
+
+
+def _numbered(
+    recipe: Recipe, parts: Path, threads: int, within: Callable[[float], None] | None, index: int
+) -> dict[str, Any]:
+    return run_trajectory(recipe, index, parts, threads, within)
 
 
 def _write_diagnostics(parts: Parts, path: Path) -> None:
@@ -126,8 +165,10 @@ def _manifest(parts: Parts, folders: list[str]) -> dict[str, Any]:
         for reason in record["refused"]:
             short = reason.split(":")[0]
             reasons[short] = reasons.get(short, 0) + 1
+    versions = {"h5py": _lagrangebench.h5py().__version__} if "lagrangebench" in parts.recipe.formats else {}
     return {
         "unipbd": _native.__version__,
+        **versions,
         "numpy": np.__version__,
         "python": platform.python_version(),
         "recipe": parts.recipe.to_dict(),
@@ -154,7 +195,7 @@ class Estimate:
     """What a data set would cost.
 
     Attributes:
-        particles: of one trajectory, without walls. bytes: of the positions, before compression, all formats.
+        particles: of one trajectory, with those of the walls. bytes: of the positions, before compression, all formats.
         seconds: computing time of one core, from the first frames of the first trajectory.
     """
 
@@ -176,5 +217,7 @@ def estimate(recipe: Recipe) -> Estimate:
         frames += 1
     per_frame = (time.monotonic() - started) / frames
     simulated = recipe.frames * recipe.stride + recipe.warm_up / sim.frame_time
-    stored = recipe.trajectories * (recipe.frames + 1) * len(sim) * 8
-    return Estimate(len(sim), stored * len(recipe.formats), per_frame * simulated * recipe.trajectories)
+    walls = wall_particles(sim.scene, int(recipe.walls["layers"]), float(recipe.walls["reach"]))
+    particles = int((sim.phases != SMOKE).sum()) + len(walls.positions)
+    stored = recipe.trajectories * (recipe.frames + 1) * particles * 8
+    return Estimate(particles, stored * len(recipe.formats), per_frame * simulated * recipe.trajectories)

@@ -54,6 +54,7 @@ def _curve(curve: Curve) -> Any:
         axes.plot(curve.x, curve.measured, "-", label="data set")
         axes.plot(curve.known_x, curve.known, "o", markersize=3.0, fillstyle="none", label="known")
         axes.set_title(curve.title)
+        axes.set_xlabel(curve.axis)
         axes.legend()
 
     return panel
@@ -62,6 +63,7 @@ def _curve(curve: Curve) -> Any:
 def _power(spectrum: npt.NDArray[np.float64]) -> Any:
     def panel(axes: Any) -> None:
         axes.semilogy(spectrum[1:, 0], np.maximum(spectrum[1:, 1], 1e-16))
-        axes.set_title("power of displacements [1/s]")
+        axes.set_title("share of the power of displacements")
+        axes.set_xlabel("frequency [1/s]")
 
     return panel

@@ -35,9 +35,11 @@ class Refused(Exception):
     """A run that the filter of the recipe does not let pass."""
 
 
-def run_trajectory(recipe: Recipe, index: int, folder: Path, threads: int = 1) -> dict[str, Any]:
+def run_trajectory(
+    recipe: Recipe, index: int, folder: Path, threads: int = 1, within: Callable[[float], None] | None = None
+) -> dict[str, Any]:
     """Makes the trajectory in `folder`/NUMBER and returns its record. What is there is left as it is, a run that was
-    killed goes on from its last state."""
+    killed goes on from its last state. `within` is told the part that is done, after every stored frame."""
     done = folder / f"{index:05d}"
     if (done / "record.json").exists():
         return read_record(done)
@@ -45,7 +47,7 @@ def run_trajectory(recipe: Recipe, index: int, folder: Path, threads: int = 1) -
     refused: list[str] = []
     for attempt in range(recipe.attempts):
         try:
-            return _Run(recipe, drawer, index, attempt, folder, threads).make(done, refused)
+            return _Run(recipe, drawer, index, attempt, folder, threads, within).make(done, refused)
         except (Crowded, Refused, SolverError, SceneError) as reason:
             kind = {Crowded: "crowded: ", SolverError: "diverged: ", SceneError: "scene: "}.get(type(reason), "")
             refused.append(f"{kind}{reason}")
@@ -78,12 +80,15 @@ def read_record(folder: Path) -> dict[str, Any]:
 class _Run:
     """One draw of a trajectory."""
 
-    def __init__(self, recipe: Recipe, drawer: Drawer, index: int, attempt: int, folder: Path, threads: int) -> None:
+    def __init__(
+        self, recipe: Recipe, drawer: Drawer, index: int, attempt: int, folder: Path, threads: int,
+        within: Callable[[float], None] | None,
+    ) -> None:
         self.recipe, self.index, self.attempt = recipe, index, attempt
         self.data, self.seed = drawer.draw(index, attempt)
         self.scene = Scene.from_dict(self.data)
         self.place = folder / f"{index:05d}.{attempt}.part"
-        self.threads = threads
+        self.threads, self.within = threads, within
 
     def make(self, done: Path, refused: list[str]) -> dict[str, Any]:
         """Runs it and puts it in its place, all at once."""
@@ -134,6 +139,8 @@ class _Run:
             self._store(number)
             if number and number % CHECKPOINT == 0:
                 self._checkpoint(number)
+            if self.within is not None:
+                self.within((number + 1) / frames)
         self.positions.flush()  # type: ignore[attr-defined]
         self.numbers.flush()  # type: ignore[attr-defined]
 

@@ -4,18 +4,11 @@
     import unipbd.envs
 
     env = gymnasium.make("unipbd/Balance-v0")
-
-Importing this module registers
-
-- ``unipbd/Balance-v0``: keep a top-heavy float upright on moving water, see `Balance`,
-- ``unipbd/Pour-v0``: pour water over a wall by tilting the vessel, see `Pour`,
-- ``unipbd/KeepUpright-v0``, ``unipbd/PourOver-v0``, ``unipbd/Stir-v0``, ``unipbd/HoldBoat-v0``: tasks that run in one
-  world (`TaskEnv`) or in many at once (`BatchEnv`), shown as numbers, grids, points or probes; see
-  `unipbd.envs.tasks`::
-
     envs = gymnasium.make_vec("unipbd/Stir-v0", num_envs=16, vectorization_mode="vector_entry_point")
 
-Episodes repeat bit for bit with the same seed and actions.
+Importing this module registers ``unipbd/Balance-v0``, ``unipbd/Pour-v0``, ``unipbd/Stir-v0`` and ``unipbd/HoldBoat-v0``:
+tasks that run in one world (`TaskEnv`) or in many at once (`BatchEnv`), shown as numbers, grids, points or probes; see
+`unipbd.envs.tasks`. Episodes repeat bit for bit with the same seed and actions.
 """
 
 from __future__ import annotations
@@ -27,15 +20,11 @@ except ImportError:
 
 from ._batch import BatchEnv
 from ._single import TaskEnv
-from .balance import Balance
-from .pour import Pour
 from .tasks import TASKS
 
-__all__ = ["TASKS", "Balance", "BatchEnv", "Pour", "TaskEnv"]
+__all__ = ["TASKS", "BatchEnv", "TaskEnv"]
 
-register("unipbd/Balance-v0", entry_point="unipbd.envs.balance:Balance", max_episode_steps=200)
-register("unipbd/Pour-v0", entry_point="unipbd.envs.pour:Pour", max_episode_steps=100)
-_NAMES = {"balance": "KeepUpright", "pour": "PourOver", "stir": "Stir", "boat": "HoldBoat"}
+_NAMES = {"balance": "Balance", "pour": "Pour", "stir": "Stir", "boat": "HoldBoat"}
 for _task, _name in _NAMES.items():
     register(
         f"unipbd/{_name}-v0",

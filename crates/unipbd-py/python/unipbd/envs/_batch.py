@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from typing import Any
+import contextlib
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, TypeAlias
 
 import numpy as np
 import numpy.typing as npt
@@ -20,6 +21,8 @@ from ._starts import settled
 from .tasks import Memory
 
 Flags = npt.NDArray[np.bool_]
+Frames: TypeAlias = dict[int, Callable[[], None]]
+"""What waits for the frame of each world."""
 
 
 class BatchEnv(VectorEnv[Vector, Vector, npt.NDArray[Any]]):
@@ -121,40 +124,46 @@ class BatchEnv(VectorEnv[Vector, Vector, npt.NDArray[Any]]):
             stopped = np.flatnonzero(self._over).tolist()
             raise RuntimeError(f"worlds {stopped} have ended: reset them with options={{'reset_mask': mask}}")
         anew = self._over.copy()
-        running = [int(number) for number in np.flatnonzero(~anew)]
-        for number in running:
-            self.task.act(self.batch[number], self._memories[number], actions[number])
-        diverged = self._advance(running)
+        running = np.flatnonzero(~anew).tolist()
+        frames = self._begin_frames(running, actions)
         rewards = np.zeros(self.num_envs)
         ended, late = np.zeros(self.num_envs, dtype=bool), np.zeros(self.num_envs, dtype=bool)
         infos: dict[str, Any] = {}
-        for number in range(self.num_envs):
-            if anew[number]:
-                info = self._begin(number)
-            else:
-                info, rewards[number], ended[number] = self._judge(number, actions[number], number in diverged)
-                late[number] = self._steps[number] >= self.horizon
-                if (ended[number] or late[number]) and self.autoreset_mode is AutoresetMode.SAME_STEP:
-                    last = {"final_obs": self._seen[number].copy(), "final_info": info}
-                    infos = self._add_info(infos, last, number)
+        try:
+            for number in range(self.num_envs):
+                if anew[number]:
                     info = self._begin(number)
-            infos = self._add_info(infos, info, number)
+                else:
+                    info, rewards[number], ended[number] = self._judge(number, actions[number], frames.pop(number))
+                    late[number] = self._steps[number] >= self.horizon
+                    if (ended[number] or late[number]) and self.autoreset_mode is AutoresetMode.SAME_STEP:
+                        last = {"final_obs": self._seen[number].copy(), "final_info": info}
+                        infos = self._add_info(infos, last, number)
+                        info = self._begin(number)
+                infos = self._add_info(infos, info, number)
+        finally:
+            _wait_for(frames)
         if self.autoreset_mode is not AutoresetMode.SAME_STEP:
             self._over = ended | late
         return self._seen.copy(), rewards, ended, late, infos
 
-    def _advance(self, running: list[int]) -> set[int]:
-        """Steps these worlds; returns those that diverged, whose frame is not done."""
-        before = {number: self.batch[number].frame for number in running}
+    def _begin_frames(self, running: list[int], actions: Vector) -> Frames:
+        """Acts in each of these worlds and starts its frame: while some are stepped others are acted in, and looked at."""
+        frames: Frames = {}
         try:
-            self.batch.step(worlds=running)
-        except SolverError:
-            return {number for number in running if self.batch[number].frame == before[number]}
-        return set()
+            for number in running:
+                self.task.act(self.batch[number], self._memories[number], actions[number])
+                frames[number] = self.batch.begin(number)
+        except BaseException:
+            _wait_for(frames)
+            raise
+        return frames
 
-    def _judge(self, number: int, action: Vector, diverged: bool) -> tuple[dict[str, Any], float, bool]:
+    def _judge(self, number: int, action: Vector, frame: Callable[[], None]) -> tuple[dict[str, Any], float, bool]:
         self._steps[number] += 1
-        if diverged:
+        try:
+            frame()
+        except SolverError:
             self._seen[number] = 0.0
             return {"diverged": True}, 0.0, True
         world, memory = self.batch[number], self._memories[number]
@@ -165,6 +174,13 @@ class BatchEnv(VectorEnv[Vector, Vector, npt.NDArray[Any]]):
     def render(self) -> tuple[npt.NDArray[np.uint8], ...] | None:
         """The present frame of every world, with ``render_mode="rgb_array"``."""
         return tuple(world.render(width=320) for world in self.batch) if self.render_mode == "rgb_array" else None
+
+
+def _wait_for(frames: Frames) -> None:
+    """Waits for frames that an exception left under way."""
+    for frame in frames.values():
+        with contextlib.suppress(SolverError):
+            frame()
 
 
 def _seeds(seed: int | Sequence[int | None] | None, count: int) -> list[int | None]:

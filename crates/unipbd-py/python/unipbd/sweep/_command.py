@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from .._options import EXIT_CODES, add_running, guarded, show, time_text
+from .._options import EXIT_CODES, Line, add_running, guarded, time_text
 from ._points import Sweep
 from ._run import Progress, rows, run_left, write_table
 
@@ -34,9 +33,9 @@ def _main(given: Sequence[str]) -> int:
     options = parser.parse_args(given)
     sweep = Sweep.load(options.sweep, dict(options.changes))
     folder = Path(options.output)
-    run_left(sweep, folder, options.shard, options.jobs, None if options.quiet else _show)
-    if not options.quiet:
-        print(file=sys.stderr)
+    line = Line()
+    progress = None if options.quiet else lambda found: line.show(_text(found), found.done == found.total)
+    run_left(sweep, folder, options.shard, options.jobs, progress)
     write_table(folder, folder / "results.csv")
     if options.parquet:
         write_table(folder, folder / "results.parquet")
@@ -46,6 +45,6 @@ def _main(given: Sequence[str]) -> int:
     return 0
 
 
-def _show(progress: Progress) -> None:
+def _text(progress: Progress) -> str:
     failed = f", {progress.failed} failed" if progress.failed else ""
-    show(f"{progress.done}/{progress.total} runs{failed}, {time_text(progress.remaining)} left")
+    return f"{progress.done}/{progress.total} runs{failed}, {time_text(progress.remaining)} left"

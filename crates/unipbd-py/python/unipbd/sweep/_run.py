@@ -144,13 +144,14 @@ def rows(folder: Path) -> list[dict[str, Any]]:
 
 def table(folder: str | os.PathLike[str]) -> Any:
     """The rows that are there as a pandas frame."""
-    return _pandas().DataFrame(rows(Path(folder)))
+    return _package("pandas").DataFrame(rows(Path(folder)))
 
 
 def write_table(folder: str | os.PathLike[str], path: str | os.PathLike[str]) -> None:
     """Writes the rows that are there to a file: .csv, or .parquet, which needs pandas and pyarrow."""
     place = Path(path)
     if place.suffix == ".parquet":
+        _package("pyarrow")
         found = table(folder)
         for column in found.columns:
             if found[column].map(lambda value: isinstance(value, (list, dict))).any():
@@ -168,11 +169,11 @@ def write_table(folder: str | os.PathLike[str], path: str | os.PathLike[str]) ->
     write(place, text.getvalue())
 
 
-def _pandas() -> Any:
+def _package(name: str) -> Any:
     try:
-        return importlib.import_module("pandas")
+        return importlib.import_module(name)
     except ImportError:
-        raise UnipbdError('a table needs pandas: pip install "unipbd[data]"') from None
+        raise UnipbdError(f'a table needs {name}: pip install "unipbd[data]"') from None
 
 
 def _row_path(folder: Path, index: int) -> Path:

@@ -9,6 +9,7 @@ import numpy.typing as npt
 
 from ..._scene import Scene
 from ..._simulation import Simulation
+from .._cells import Cells
 from ._task import FRAMES_PER_SECOND, Memory, Task
 
 COLUMNS = 12
@@ -17,6 +18,7 @@ STEEPEST = float(np.radians(80.0))
 FASTEST = float(np.radians(180.0))
 """Largest rate of tilt [rad/s]."""
 WIDTH, WALL = 2.1, 1.05
+CELLS = Cells((0.0, -100.0), (WIDTH, 100.0), (COLUMNS, 1))
 
 
 class PourTask(Task):
@@ -50,7 +52,7 @@ class PourTask(Task):
         return {"tilt": 0.0, "poured": self._share(sim), "gravity": float(np.hypot(*sim.gravity))}
 
     def _share(self, sim: Simulation) -> float:
-        return float(np.mean(sim.positions[:, 0] > WALL))
+        return float(np.count_nonzero(sim.positions[:, 0] > WALL)) / len(sim)
 
     def act(self, sim: Simulation, memory: Memory, action: npt.NDArray[np.float32]) -> None:
         turned = memory["tilt"] + float(action[0]) * FASTEST * sim.frame_time
@@ -67,9 +69,9 @@ class PourTask(Task):
         return reward, poured > 0.8 and abs(memory["tilt"]) < 0.1, {"poured": poured}
 
     def state(self, sim: Simulation, memory: Memory) -> list[float]:
-        x = sim.positions[:, 0]
-        columns, _ = np.histogram(x, bins=COLUMNS, range=(0.0, WIDTH))
-        return [memory["tilt"], memory["poured"], *sim.velocities.mean(axis=0), *(columns / len(x))]
+        x = sim.positions
+        columns = CELLS.sums(CELLS.numbers(x)) / len(x)
+        return [memory["tilt"], memory["poured"], *(sim.velocities.sum(axis=0) / len(x)).tolist(), *columns.tolist()]
 
     def info(self, sim: Simulation, memory: Memory) -> dict[str, Any]:
         return {"poured": memory["poured"]}

@@ -9,10 +9,11 @@ import numpy.typing as npt
 
 from ..._scene import Scene
 from ..._simulation import Simulation
+from .._cells import Cells
 from ._task import FRAMES_PER_SECOND, Memory, Task
 
 WIDTH, DEPTH = 1.2, 0.72
-CELLS = (5, 3)
+CELLS = Cells((0.0, 0.0), (WIDTH, DEPTH + 0.12), (5, 3))
 """Cells in which the mixture is judged."""
 FASTEST = 1.0
 """Largest speed of the paddle [m/s]."""
@@ -31,7 +32,7 @@ class StirTask(Task):
 
     name = "stir"
     actions = 2
-    highest = (1.0, 1.0, 2.0, 2.0, 1.0, *CELLS[0] * CELLS[1] * (1.0,))
+    highest = (1.0, 1.0, 2.0, 2.0, 1.0, *CELLS.count * (1.0,))
     settling = 10
     view = ((0.0, 0.0), (WIDTH, 1.0))
 
@@ -51,23 +52,20 @@ class StirTask(Task):
         return {"unmixed": self._unmixed(sim)}
 
     def _cells(self, sim: Simulation) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
-        """Particles and share of red in each cell."""
-        index = np.array([*sim.materials]).tolist().index("red")
-        x, red = sim.positions, sim.material_indices == index
+        """Particles and share of red, the first liquid of the scene, in each cell."""
         fluid = sim.phases == 0
-        edges = [np.linspace(0.0, WIDTH, CELLS[0] + 1), np.linspace(0.0, DEPTH + 0.12, CELLS[1] + 1)]
-        both = np.histogram2d(x[fluid, 0], x[fluid, 1], bins=edges)[0]
-        ours = np.histogram2d(x[fluid & red, 0], x[fluid & red, 1], bins=edges)[0]
-        return both.ravel(), np.divide(ours, both, out=np.full_like(both, 0.5), where=both > 0).ravel()
+        number, red = CELLS.numbers(sim.positions[fluid]), sim.material_indices[fluid] == 0
+        both, ours = CELLS.sums(number), CELLS.sums(number[red])
+        return both, np.where(both > 0.0, ours / np.maximum(both, 1.0), 0.5)
 
     def _unmixed(self, sim: Simulation) -> float:
         """Variance of the share of red over that of separate liquids: 1 apart, 0 mixed."""
         count, share = self._cells(sim)
-        return float(4.0 * np.average((share - 0.5) ** 2, weights=count))
+        return float(4.0 * np.dot((share - 0.5) ** 2, count) / count.sum())
 
     def act(self, sim: Simulation, memory: Memory, action: npt.NDArray[np.float32]) -> None:
         place = sim.bodies["paddle"].position
-        goal = np.clip(place + FASTEST * np.asarray(action, dtype=np.float64) * sim.frame_time, *map(np.array, ROOM))
+        goal = np.clip(place + FASTEST * np.asarray(action, dtype=np.float64) * sim.frame_time, *ROOM)
         with sim.edit() as edit:
             edit.bodies["paddle"].velocity = (goal - place) / sim.frame_time
 
@@ -82,7 +80,7 @@ class StirTask(Task):
     def state(self, sim: Simulation, memory: Memory) -> list[float]:
         paddle = sim.bodies["paddle"]
         _, share = self._cells(sim)
-        return [*(paddle.position / WIDTH), *paddle.velocity, memory["unmixed"], *(share - 0.5)]
+        return [*(paddle.position / WIDTH).tolist(), *paddle.velocity.tolist(), memory["unmixed"], *(share - 0.5).tolist()]
 
     def info(self, sim: Simulation, memory: Memory) -> dict[str, Any]:
         return {"unmixed": memory["unmixed"]}

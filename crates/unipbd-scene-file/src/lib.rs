@@ -1,4 +1,6 @@
-//! Scene files: TOML read into a [`Scene`], with every problem of the file named at once.
+#![doc = include_str!("../README.md")]
+//!
+//! # How it works
 //!
 //! The text is parsed into a tree that keeps positions, overrides are laid over it, the tree is
 //! compared with the JSON schema of [`Scene`], and what remains is checked for meaning by
