@@ -68,7 +68,7 @@ impl Scene {
 /// Particles and smoke markers that an emitter adds [1/s].
 fn rates(emitter: &Emitter, spacing: f64) -> (f64, f64) {
     let rate =
-        |(columns, apart): (usize, f64), speed: f64| columns as f64 * apart * speed.max(0.0) / (spacing * spacing);
+        |(columns, apart): (usize, f64), speed: f64| columns as f64 * (apart / spacing) * (speed.max(0.0) / spacing);
     // The mean of 1 - s^2/2 over the face is 5/6.
     let mean = if emitter.profile == Profile::Parabolic { 5.0 / 6.0 } else { 1.0 };
     let core = rate(emitter.columns(spacing), emitter.speed * mean);
