@@ -30,7 +30,7 @@ def guarded(work: Callable[[Sequence[str]], int], arguments: Sequence[str] | Non
         print(f"error: {error}", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
-        print("interrupted: the same command goes on from here", file=sys.stderr)
+        print("\ninterrupted: the same command goes on from here", file=sys.stderr)
         return 130
 
 
