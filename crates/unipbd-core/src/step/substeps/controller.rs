@@ -51,6 +51,11 @@ impl SubstepRule {
         }
     }
 
+    /// Whether the number is that of the scene, whatever happens.
+    pub fn is_fixed(&self) -> bool {
+        matches!(self.substeps, Substeps::Fixed(_))
+    }
+
     /// Substeps for a frame of this length [s], the first of a run.
     pub fn choose(&self, frame: f64, demand: Demand) -> Choice {
         self.choose_after(0, frame, demand)
@@ -81,8 +86,7 @@ impl SubstepRule {
     /// more than its stored energy, up to 4 % of the energy of a drop that is drawn out; so it keeps its value and
     /// grows frame by frame. The target compression is still met.
     pub fn stiffness_after(&self, last: u32, before: f64, frame: f64, demand: Demand, substeps: u32) -> f64 {
-        let fixed = matches!(self.substeps, Substeps::Fixed(_));
-        if fixed || last == 0 || !self.law.stores_energy() {
+        if self.is_fixed() || last == 0 || !self.law.stores_energy() {
             return 1.0;
         }
         let square = |part: f64| part * part;
