@@ -55,11 +55,10 @@ function slider(property, kind, entry, index, key) {
   };
 }
 
-/** Twice the value either way, or ten times for densities and rates; within what the schema allows. */
+/** From nothing, or a twentieth of a density, to some times the value; within what the schema allows. */
 function range(key, value, { minimum, maximum }) {
-  const wide = key.includes("density") ? 4 : 3;
-  let [low, high] = value === 0 ? [0, 1] : [Math.min(0, wide * value), Math.max(0, wide * value)];
-  if (key.includes("density")) low = 0.05 * value;
+  let [low, high] = value === 0 ? [0, 1] : [Math.min(0, 3 * value), Math.max(0, 3 * value)];
+  if (key.includes("density")) [low, high] = [0.05 * value, 4 * value];
   if (key === "kinematic_viscosity") high = Math.max(high, 0.5);
   if (["xsph", "friction", "restitution", "damping"].includes(key)) [low, high] = [0, 1];
   return [Math.max(low, minimum ?? low), Math.min(high, maximum ?? high)];

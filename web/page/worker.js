@@ -24,8 +24,8 @@ const commands = {
     began();
   },
   change({ settings }) {
-    if (!run.change(settings)) began();
-    else send();
+    if (run.change(settings)) send();
+    else began();
   },
   play({ on }) {
     playing = on;

@@ -34,7 +34,7 @@ fn scene(setup: &Setup, substeps: u32, iterations: u32) -> Scene {
         tank: setup.width.map(tank).into_iter().collect(),
         half_plane: if setup.width.is_none() { vec![floor] } else { Vec::new() },
         solver: SolverSettings { substeps: Substeps::Fixed(substeps), ..SolverSettings::default() },
-        contacts: ContactDescription { iterations: iterations, ..ContactDescription::default() },
+        contacts: ContactDescription { iterations, sleep: false, ..ContactDescription::default() },
         ..Scene::default()
     }
 }

@@ -3,12 +3,20 @@
 use crate::support::Place;
 
 /// Kinds of scene, each with more than the 4,096 rows from which on loops are shared among threads.
-const SCENES: [(&str, &str); 6] = [
+const SCENES: [(&str, &str); 7] = [
     (
         "liquid",
         "spacing = 0.02\n[solver]\nsubsteps = 3\nsettle_substeps = 2\n[[liquid]]\nname = \"water\"\nxsph = 0.05\n\
       [[block]]\nmaterial = \"water\"\nmin = [0.0, 0.0]\nmax = [1.4, 1.4]\n[[tank]]\nmin = [0.0, 0.0]\nmax = [2.0, 2.0]\n\
       [[body]]\nsize = [0.3, 0.2]\nposition = [1.6, 0.5]\n[[body]]\nradius = 0.1\nposition = [1.7, 0.9]\n",
+    ),
+    (
+        "bodies",
+        "spacing = 0.02\n[solver]\nsubsteps = 3\n[[liquid]]\nname = \"water\"\n[[block]]\nmaterial = \"water\"\n\
+      min = [-0.2, 0.0]\nmax = [-0.1, 0.1]\n[[half_plane]]\npoint = [0.0, 0.0]\nnormal = [0.0, 1.0]\n[[body]]\n\
+      size = [0.05, 0.05]\nposition = [0.1, 0.025]\nrolling_friction = 0.1\n\
+      copies = { columns = 40, rows = 30, step = [0.05, 0.05] }\n[[body]]\nradius = 0.025\nposition = [0.11, 1.525]\n\
+      restitution = 0.5\nvelocity = [0.0, -3.0]\ncopies = { columns = 38, rows = 8, step = [0.05, 0.05] }\n",
     ),
     (
         "grid",

@@ -170,6 +170,9 @@ impl RigidBodies {
     }
 
     fn find_without_slip(&mut self) {
+        if !self.seen {
+            return;
+        }
         let specs = self.bodies.specifications().iter().zip(&self.sample_ids);
         let held = specs.filter(|(spec, _)| spec.surface.no_slip && spec.matched.is_none());
         self.without_slip.clear();
@@ -184,6 +187,7 @@ impl RigidBodies {
     /// Finds how each body answers to a load. Contacts hold where they were pressed in the last substep: call it before
     /// they are solved again.
     pub(crate) fn find_mobilities(&mut self) {
+        self.contacts.note_impulses();
         let mut mobilities = std::mem::take(&mut self.mobilities);
         let hinges = self.contacts.joint_loads().map(|(joint, ..)| joint).flat_map(|joint| self.hinge_rows(joint));
         mobilities.find(self.bodies.inverse_masses(), self.contacts.held_rows().chain(hinges));

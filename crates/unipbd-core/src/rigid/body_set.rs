@@ -1,6 +1,6 @@
 //! All bodies of a run: state as columns, and the specification of each body.
 
-use super::derived::{Derived, InverseMass, Script};
+use super::derived::{Derived, InverseMass, Mover, Script};
 use super::{Body, BodyKind, BodySpec, Elasticity, Pose, Twist};
 use crate::math::Vector64;
 use crate::shapes::{Core, ShapeError};
@@ -36,6 +36,9 @@ pub struct Bodies {
     /// Square root of the area [m].
     pub(crate) sizes: Vec<f64>,
     pub(super) scripts: Vec<Script>,
+    /// What moves each body; follows from the other columns.
+    #[serde(skip)]
+    pub(super) movers: Vec<Mover>,
     pub(super) views: Vec<Body>,
     /// What each body was made from, with all changes since.
     pub(super) specs: Vec<BodySpec>,
@@ -77,8 +80,15 @@ impl Bodies {
         self.views.push(derived.view);
         self.specs.push(spec);
         let id = self.len() - 1;
+        self.movers.push(Mover::Nothing);
+        self.find_mover(id);
         self.refresh_view(id);
         Ok(id as u32)
+    }
+
+    /// Finds out what moves a body, after a change of its kind or script.
+    pub(super) fn find_mover(&mut self, id: usize) {
+        self.movers[id] = Mover::of(&self.views[id], self.matched[id].is_some(), &self.scripts[id]);
     }
 
     /// The body of this name, unless it was taken away.
@@ -162,7 +172,7 @@ impl Bodies {
 
     /// Whether contacts or forces can move it.
     pub(crate) fn is_dynamic(&self, id: usize) -> bool {
-        self.views[id].kind == BodyKind::Dynamic && self.matched[id].is_none()
+        self.movers[id] == Mover::Pushes
     }
 
     /// Elasticity of a body with shape matching.
@@ -186,10 +196,10 @@ impl Bodies {
     /// Whether it may move in the next substep.
     #[inline]
     pub(crate) fn is_active(&self, id: usize) -> bool {
-        match self.views[id].kind {
-            BodyKind::Dynamic => !self.asleep[id] && self.matched[id].is_none(),
-            BodyKind::Kinematic => self.scripts[id].driven.is_some() || !self.scripts[id].motion.is_still(),
-            BodyKind::Static => false,
+        match self.movers[id] {
+            Mover::Pushes => !self.asleep[id],
+            Mover::Script => true,
+            Mover::Nothing => false,
         }
     }
 
@@ -197,12 +207,12 @@ impl Bodies {
     /// `time` is the start of the substep [s].
     pub fn predict(&mut self, dt: f64, time: f64, gravity: Vector64) {
         for id in 0..self.len() {
-            self.displacements[id] = match self.views[id].kind {
-                BodyKind::Dynamic if !self.asleep[id] && self.matched[id].is_none() => {
+            self.displacements[id] = match self.movers[id] {
+                Mover::Pushes if !self.asleep[id] => {
                     let pull = gravity * self.scripts[id].gravity_factor;
                     self.scripts[id].damping.moved(&self.velocities[id], pull, dt)
                 }
-                BodyKind::Kinematic => match self.scripts[id].driven {
+                Mover::Script => match self.scripts[id].driven {
                     Some(velocity) => velocity.scaled(dt),
                     None => self.scripted_displacement(id, time + dt),
                 },
@@ -292,6 +302,7 @@ impl Bodies {
             BodyKind::Kinematic => self.scripts[id].driven = Some(velocity),
             BodyKind::Static => return,
         }
+        self.find_mover(id);
         self.velocities[id] = velocity;
         self.refresh_view(id);
     }

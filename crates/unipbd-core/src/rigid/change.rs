@@ -129,6 +129,7 @@ impl Bodies {
             BodyKind::Kinematic if change.kind.is_some() => self.scripts[k].driven = Some(velocity),
             _ => {}
         }
+        self.find_mover(k);
         self.refresh_view(k);
     }
 
@@ -148,6 +149,7 @@ impl Bodies {
         (view.fluid_force, view.fluid_torque) = (old.fluid_force, old.fluid_torque);
         (view.contact_force, view.contact_torque) = (old.contact_force, old.contact_torque);
         view.removed = old.removed;
+        self.find_mover(k);
     }
 
     /// Puts the centre of mass of a body somewhere else, at once. A scripted body goes on from there. `time` is now [s].

@@ -27,6 +27,28 @@ pub(super) struct Script {
     pub(super) damping: Damping,
 }
 
+/// What moves a body: one byte, read in every loop over bodies.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) enum Mover {
+    /// Contacts and forces.
+    Pushes,
+    /// Its script, or a velocity that a caller has set.
+    Script,
+    /// Nothing, or particles.
+    #[default]
+    Nothing,
+}
+
+impl Mover {
+    pub fn of(view: &Body, matched: bool, script: &Script) -> Mover {
+        match view.kind {
+            BodyKind::Dynamic if !matched => Mover::Pushes,
+            BodyKind::Kinematic if script.driven.is_some() || !script.motion.is_still() => Mover::Script,
+            _ => Mover::Nothing,
+        }
+    }
+}
+
 /// What follows from the specification of a body.
 pub(super) struct Derived {
     pub pose: Pose,

@@ -21,6 +21,7 @@ impl Bodies {
         for (mine, script) in taken.scripts.iter_mut().zip(&saved.scripts) {
             mine.driven = script.driven;
         }
+        (0..taken.len()).for_each(|id| taken.find_mover(id));
         for ((mine, view), matched) in taken.views.iter_mut().zip(saved.views).zip(&self.matched) {
             take_motion(mine, view, matched.is_some());
         }

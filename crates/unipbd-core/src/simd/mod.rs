@@ -13,6 +13,7 @@ pub(crate) mod portable;
 pub(crate) mod space;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128", not(feature = "f64")))]
 pub(crate) mod wasm;
+pub(crate) mod wide;
 #[cfg(all(target_arch = "x86_64", not(feature = "f64")))]
 pub(crate) mod x86;
 

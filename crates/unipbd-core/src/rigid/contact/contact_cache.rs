@@ -21,6 +21,11 @@ pub(crate) struct Point {
 }
 
 impl Point {
+    /// In the place of a second point that is not there.
+    pub fn absent() -> Point {
+        Point { gap: f64::INFINITY, ..Point::default() }
+    }
+
     /// Whether all numbers are finite.
     pub fn is_finite(&self) -> bool {
         let moments = [self.normal_a, self.normal_b, self.tangent_a, self.tangent_b];

@@ -1,10 +1,9 @@
-//! The contacts of a search, and the substep of the search.
+//! The contacts of a search.
 
 use super::contact_cache::ContactCache;
 use super::manifold::Contact;
 use super::pairs::Pair;
 use super::touch::Touch;
-use crate::math::Vector64;
 
 /// Contacts by pair.
 #[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
@@ -14,17 +13,6 @@ pub(super) struct ContactSet {
     /// Buffer of the search.
     #[serde(skip)]
     pub touches: Vec<Touch>,
-}
-
-/// Parameters of a substep for the search.
-#[derive(Clone, Copy)]
-pub(super) struct StepContext {
-    /// Its length [s].
-    pub dt: f64,
-    /// Gravity [m/s^2].
-    pub gravity: Vector64,
-    /// Sliding speed below which a contact sticks [m/s].
-    pub slow: f64,
 }
 
 /// The contacts of a substep with their cache data, row by row.
@@ -39,6 +27,11 @@ impl ContactSet {
                 .is_some_and(|pair| contact.is_sound(pair.bodies) && cache.wall == pair.wall && cache.is_finite())
         };
         self.contacts.len() == self.caches.len() && self.contacts.iter().zip(&self.caches).all(sound)
+    }
+
+    /// Whether one of them can rebound.
+    pub fn is_elastic(&self) -> bool {
+        self.caches.iter().any(|cache| cache.surface.restitution > 0.0)
     }
 
     pub fn clear(&mut self) {

@@ -55,4 +55,10 @@ impl Frames {
     pub fn of(&self, body: u32) -> &Frame {
         if body == NONE { &WORLD } else { &self.0[body as usize] }
     }
+
+    /// Those of both bodies of a contact.
+    #[inline]
+    pub fn both(&self, (a, b): (u32, u32)) -> [&Frame; 2] {
+        [self.of(a), self.of(b)]
+    }
 }

@@ -149,6 +149,11 @@ impl Linked {
         if self.block.is_used() { self.block.kept_pushes() } else { self.pushes(self.force(), self.motor) }
     }
 
+    /// The pushes to start a substep with.
+    pub fn start(&self) -> (Twist, Twist) {
+        if self.is_live() { self.kept_pushes() } else { Default::default() }
+    }
+
     fn direction(&self) -> Vector64 {
         self.offset.try_normalize().unwrap_or(Vector64::Y)
     }

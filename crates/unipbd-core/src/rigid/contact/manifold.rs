@@ -6,10 +6,11 @@
 //! once or seldom in [`ContactCache`]: sweeps over large heaps are bound by memory.
 
 use super::Depenetration;
-use super::complementarity::{self, Coupling};
+use super::complementarity::{self, Coupling, inverse};
 use super::contact_cache::{ContactCache, Point, Rebound};
 use super::frames::Frame;
 use super::push::Push;
+use super::step_context::StepContext;
 use super::touch::{Reference, Touch};
 use crate::math::Vector64;
 use crate::rigid::{InverseMass, Twist};
@@ -19,7 +20,7 @@ use crate::rigid::{InverseMass, Twist};
 pub(super) struct EffectiveMass {
     /// Inverse effective mass along the normal, with the split masses [1/kg].
     pub normal: Coupling,
-    /// Tangential response of each point to itself [1/kg].
+    /// Effective mass of each point along the tangent [kg].
     pub tangent: [f64; 2],
     /// Responses of both bodies to moments [1/(kg m^2)].
     pub turning: (f64, f64),
@@ -32,7 +33,7 @@ pub(super) struct EffectiveMass {
 }
 
 /// Rounds of normal and friction impulses of a new contact.
-const ROUNDS: usize = 8;
+pub(super) const ROUNDS: usize = 8;
 
 /// One or two points of two bodies with a common normal.
 #[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
@@ -46,7 +47,7 @@ pub(crate) struct Contact {
     points: [Point; 2],
     pub(super) effective_mass: EffectiveMass,
     /// Rolling friction times the rolling radius [m].
-    rolling_arm: f64,
+    pub(super) rolling_arm: f64,
     /// Impulse of the rolling resistance [kg m^2].
     pub rolling_impulse: f64,
 }
@@ -137,6 +138,10 @@ impl Contact {
 
     /// Scales the impulses of the last substep to this one; a point that rebounded starts without.
     pub fn age(&mut self, cache: &mut ContactCache, kept: f64) {
+        if cache.surface.restitution == 0.0 {
+            self.scale_impulses(kept);
+            return;
+        }
         self.rolling_impulse *= if cache.rebounded() { 0.0 } else { kept };
         for (point, rebound) in self.points_mut().iter_mut().zip(&mut cache.rebound) {
             let old = *point;
@@ -183,17 +188,24 @@ impl Contact {
         self.points().iter().map(left).fold(f64::INFINITY, f64::min)
     }
 
-    /// Stores the velocities at the start of a substep. A contact that slides slower than `slow` [m/s] sticks.
-    pub fn note_velocities(&mut self, cache: &mut ContactCache, velocities: &[Twist], slow: f64, dt: f64) {
+    /// Chooses the coefficient of friction by the velocities at the start of a substep, and stores those of a contact
+    /// that may rebound. A contact that slides slowly sticks.
+    pub(super) fn note_velocities(&mut self, cache: &mut ContactCache, velocities: &[Twist], moment: &StepContext) {
+        let surface = &cache.surface;
+        self.effective_mass.belt = surface.speed * moment.dt;
+        self.effective_mass.friction = surface.static_friction;
+        let (alike, elastic) = (surface.static_friction == surface.kinetic_friction, surface.restitution > 0.0);
+        if alike && !elastic {
+            return;
+        }
         let (a, b) = (entry(velocities, self.a), entry(velocities, self.b));
-        let mut sliding = 0.0f64;
+        let slides = |point: &Point| (self.slide(point, &a, &b) - surface.speed).abs() >= moment.slow;
+        if !alike && self.points().iter().any(slides) {
+            self.effective_mass.friction = surface.kinetic_friction;
+        }
         for (k, point) in self.points().iter().enumerate() {
             cache.approach[k] = self.opening(point, &a, &b);
-            sliding = sliding.max((self.slide(point, &a, &b) - cache.surface.speed).abs());
         }
-        let surface = &cache.surface;
-        self.effective_mass.belt = surface.speed * dt;
-        self.effective_mass.friction = if sliding < slow { surface.static_friction } else { surface.kinetic_friction };
     }
 
     /// Prepares the equations; `split` are the inverse masses times the splitting factor of each body.
@@ -204,11 +216,13 @@ impl Contact {
         let along_normal = |p: &Point, q: &Point| linear + turning(p.normal_a, q.normal_a, p.normal_b, q.normal_b);
         let along_tangent = |p: &Point| linear + turning(p.tangent_a, p.tangent_a, p.tangent_b, p.tangent_b);
         let [p, q] = &self.points;
-        let mut normal = Coupling { first: along_normal(p, p), second: 0.0, off: 0.0 };
-        let mut tangent = [along_tangent(p), 0.0];
-        if self.count == 2 {
-            (normal.second, normal.off, tangent[1]) = (along_normal(q, q), along_normal(p, q), along_tangent(q));
-        }
+        let (normal, tangent) = match self.count {
+            2 => {
+                let coupling = Coupling::of_two(along_normal(p, p), along_normal(q, q), along_normal(p, q));
+                (coupling, [inverse(along_tangent(p)), inverse(along_tangent(q))])
+            }
+            _ => (Coupling::of_one(along_normal(p, p)), [inverse(along_tangent(p)), 0.0]),
+        };
         self.effective_mass =
             EffectiveMass { normal, tangent, turning: (a.angular, b.angular), linear, ..self.effective_mass };
     }
@@ -234,6 +248,16 @@ impl Contact {
         push
     }
 
+    /// The same of a contact that has not rebounded.
+    pub fn steady_push(&self, dt: f64) -> Push {
+        let (kept, per_second) = (self.kept_push(), 1.0 / dt);
+        Push {
+            linear: kept.linear * per_second,
+            angular_a: kept.angular_a * per_second,
+            angular_b: kept.angular_b * per_second,
+        }
+    }
+
     pub fn add_push(&self, push: &mut Push, point: &Point, normal: f64, tangent: f64) {
         push.linear += self.normal * normal + self.tangent() * tangent;
         push.angular_a += point.normal_a * normal + point.tangent_a * tangent;
@@ -250,11 +274,15 @@ impl Contact {
 
     /// One iteration: no approach beyond the gap, friction inside Coulomb's cone, rolling resistance.
     pub fn solve(&mut self, displacements: &[Twist]) -> Push {
-        let mut motion = (entry(displacements, self.a), entry(displacements, self.b));
+        let motion = (entry(displacements, self.a), entry(displacements, self.b));
         // Friction of a tall body turns it: a contact without impulses to start from needs a few rounds for both.
         let is_new = self.count == 2 && !self.is_pressed() && self.effective_mass.friction > 0.0;
+        if is_new { self.solve_anew(motion) } else { self.solve_once(motion) }
+    }
+
+    fn solve_anew(&mut self, mut motion: (Twist, Twist)) -> Push {
         let mut push = Push::default();
-        for _ in 0..if is_new { ROUNDS } else { 1 } {
+        for _ in 0..ROUNDS {
             let step = self.solve_once(motion);
             push += step;
             let (turns_a, turns_b) = self.effective_mass.turning;
@@ -282,6 +310,7 @@ impl Contact {
 
     /// The normal impulses that leave no approach beyond the gap, in place of the `old` ones; `None` if
     /// there were none and none are needed.
+    #[inline]
     pub fn press(&self, (a, b): (Twist, Twist), old: [f64; 2]) -> Option<Pressed> {
         let mut excess = [0.0; 2];
         for (excess, point) in excess.iter_mut().zip(self.points()) {
@@ -311,8 +340,9 @@ impl Contact {
         let turned = point.tangent_a * pressed.turned.0 + point.tangent_b * pressed.turned.1;
         // Both points have the same tangential motion: each takes the share of its normal load.
         let share = pressed.normal[k] / total;
-        (self.slide(point, &pressed.a, &pressed.b) - self.effective_mass.belt + turned) * share
-            / self.effective_mass.tangent[k]
+        (self.slide(point, &pressed.a, &pressed.b) - self.effective_mass.belt + turned)
+            * share
+            * self.effective_mass.tangent[k]
     }
 
     /// Rolling resistance, after the other impulses of the contact have rotated the bodies.
@@ -329,11 +359,11 @@ impl Contact {
         self.rolling_impulse = moment;
     }
 
-    /// The push that removes overlap from the positions; `size` is the size of the smaller body, and
-    /// `fall` twice the gravity times the square of the substep [m].
+    /// The push that removes overlap from the positions; `flown` is the way of each point since its rebound [m], `size`
+    /// the size of the smaller body, and `fall` twice the gravity times the square of the substep [m].
     pub fn separate(
         &self,
-        cache: &ContactCache,
+        flown: [f64; 2],
         displacements: &[Twist],
         how: &Depenetration,
         size: f64,
@@ -342,8 +372,8 @@ impl Contact {
         let (a, b) = (entry(displacements, self.a), entry(displacements, self.b));
         let mut lacking = [0.0; 2];
         for (k, point) in self.points().iter().enumerate() {
-            let (gap, flown) = (point.gap + self.opening(point, &a, &b), cache.rebound[k].flown);
-            lacking[k] = if flown > 0.0 { (gap - flown).min(0.0) } else { how.lacking(-gap, size, fall) };
+            let gap = point.gap + self.opening(point, &a, &b);
+            lacking[k] = if flown[k] > 0.0 { (gap - flown[k]).min(0.0) } else { how.lacking(-gap, size, fall) };
         }
         if lacking == [0.0; 2] {
             return Push::default();

@@ -1,7 +1,7 @@
 //! Contacts and joints of rigid bodies, solved on the displacements of a substep.
 //!
 //! Contacts are constraints on the displacement u of a substep, warm started with the impulses of the
-//! last one and solved by Gauss-Seidel sweeps, forwards and backwards in turn; or by Jacobi sweeps in which a body's
+//! last one and solved by Gauss-Seidel sweeps, forwards and backwards from substep to substep; or by Jacobi sweeps in which a body's
 //! mass is split among its contacts (Tonge et al. 2012, "Mass splitting for jitter-free parallel rigid body
 //! simulation"). Overlap never becomes velocity: a separate pass removes it from the positions. A substep calls, in
 //! this order:
@@ -15,6 +15,7 @@
 //! a frame ends with [`Contacts::finish_frame`] and [`Bodies::finish_frame`].
 
 mod block;
+mod blocks;
 mod bounds;
 mod broad;
 mod collide;
@@ -28,6 +29,7 @@ mod islands;
 mod jacobi;
 mod joint;
 mod joint_set;
+mod lanes;
 mod linked;
 mod manifold;
 mod narrow_phase;
@@ -41,6 +43,8 @@ mod rows;
 mod saved;
 mod settings;
 mod solver;
+mod step_context;
+mod substep;
 mod sweep;
 mod touch;
 mod union_find;
@@ -64,15 +68,15 @@ use crate::parallel::Parallelism;
 use crate::rigid::Wall;
 use crate::rigid::{Bodies, HeldRow, InverseMass, Twist};
 use crate::scene::ContactMethod;
+use blocks::Blocks;
 use bounds::NONE;
 use contact_cache::{ContactCache, Point};
-use contact_set::StepContext;
 use islands::Islands;
 use jacobi::Jacobi;
 use narrow_phase::NarrowPhase;
 use solver::InTurn;
 use std::sync::Arc;
-use sweep::Order;
+use step_context::StepContext;
 use watch::Watch;
 
 /// The contacts and joints of all bodies: solver state that lasts from substep to substep.
@@ -89,6 +93,8 @@ pub struct Contacts {
     watch: Watch,
     islands: Islands,
     jacobi: Jacobi,
+    #[serde(skip)]
+    blocks: Blocks,
     split: Vec<InverseMass>,
     /// Inverse masses for contacts; empty if they equal those of the bodies.
     scaled: Vec<InverseMass>,
@@ -98,9 +104,15 @@ pub struct Contacts {
     wall_forces: Vec<Vector64>,
     #[serde(skip)]
     wall_names: Vec<String>,
-    /// Whether the next iteration goes through the contacts from the last to the first.
+    /// Whether a contact rebounds in this substep.
+    #[serde(skip)]
+    rebounding: bool,
+    /// Whether sweeps of this substep go through the contacts from the last to the first. Stacks need both directions;
+    /// in turn within a substep they undo a part of each other.
     backward: bool,
     dt: f64,
+    #[serde(skip)]
+    moment: StepContext,
     warm_factor: f64,
     gravity: f64,
     up: Vector64,
@@ -145,6 +157,7 @@ impl Contacts {
             watch: Watch::default(),
             islands: Islands::default(),
             jacobi: Jacobi::default(),
+            blocks: Blocks::default(),
             split: Vec::new(),
             scaled: Vec::new(),
             counts: Vec::new(),
@@ -152,8 +165,10 @@ impl Contacts {
             wall_impulses: vec![Vector64::ZERO; walls.len()],
             wall_forces: vec![Vector64::ZERO; walls.len()],
             wall_names: walls.iter().map(|wall| wall.name.clone()).collect(),
+            rebounding: false,
             backward: false,
             dt: 0.0,
+            moment: StepContext::default(),
             warm_factor: 1.0,
             gravity: 0.0,
             up: Vector64::ZERO,
@@ -169,97 +184,6 @@ impl Contacts {
     pub(crate) fn run_on(&mut self, parallelism: Parallelism) {
         self.narrow_phase.parallelism = parallelism;
         self.jacobi.parallelism = parallelism;
-    }
-
-    /// Finds the contacts at the start of a substep and wakes the bodies that are touched.
-    pub fn begin_substep(&mut self, bodies: &mut Bodies, dt: f64, gravity: Vector64) {
-        // Impulses are forces times dt^2: the same force has a larger impulse in a longer substep.
-        self.warm_factor = if self.dt > 0.0 { (dt / self.dt) * (dt / self.dt) } else { 1.0 };
-        self.dt = dt;
-        self.gravity = gravity.length();
-        self.up = -gravity.normalize_or_zero();
-        self.islands.resize(bodies.len());
-        self.islands.wake_pushed(bodies);
-        self.narrow_phase.age(self.solver.kept() * self.warm_factor);
-        let moment = StepContext { dt, gravity, slow: 2.0 * self.gravity * dt };
-        loop {
-            self.narrow_phase.find(bodies, &moment);
-            if !self.islands.wake_touched(bodies, self.narrow_phase.contacts(), &self.joints, dt) {
-                break;
-            }
-        }
-        self.narrow_phase.pass(dt);
-    }
-
-    /// Applies the impulses kept from the last substep.
-    pub fn warm_start(&mut self, bodies: &mut Bodies) {
-        self.solver.scale_masses(self.narrow_phase.contacts(), bodies, self.up, &mut self.scaled);
-        let at_once = self.solver.at_once();
-        if at_once {
-            self.split_masses(bodies);
-            self.jacobi.index(self.narrow_phase.contacts(), bodies.len());
-        }
-        let masses = seen(&self.scaled, &bodies.inverse_masses);
-        let split = if at_once { &self.split[..] } else { masses };
-        for linked in &mut self.joints {
-            linked.prepare(&bodies.poses, &bodies.displacements, split, self.dt, self.warm_factor);
-        }
-        let order = if at_once { Order::AtOnce(&mut self.jacobi) } else { Order::InTurn };
-        let rows = self.narrow_phase.rows();
-        Sweep { order, rows, joints: &mut self.joints, masses, motion: &mut bodies.displacements }.run(
-            |contact, _, _| {
-                contact.prepare(split);
-                contact.kept_push()
-            },
-            |linked, _| if linked.is_live() { linked.kept_pushes() } else { Default::default() },
-        );
-    }
-
-    /// N = max(1, n/relaxation) for the n contacts and joints that act on a body in this substep.
-    fn split_masses(&mut self, bodies: &Bodies) {
-        self.counts.clear();
-        self.counts.resize(bodies.len(), 0);
-        let mut count = |body: u32| {
-            if body != NONE {
-                self.counts[body as usize] += 1;
-            }
-        };
-        for contact in self.narrow_phase.contacts() {
-            let near = 1e-3 * bodies.sizes[contact.a as usize];
-            if contact.is_pressed() || contact.gap_after(&bodies.displacements, 1.0) < near {
-                count(contact.a);
-                count(contact.b);
-            }
-        }
-        for (a, b) in self.joints.iter().filter(|linked| linked.is_live()).map(Linked::bodies) {
-            count(a);
-            count(b);
-        }
-        let relaxation = self.settings.relaxation;
-        self.split.clear();
-        self.split.extend(seen(&self.scaled, &bodies.inverse_masses).iter().zip(&self.counts).map(
-            |(response, &count)| {
-                let shares = (f64::from(count) / relaxation).max(1.0);
-                InverseMass { linear: response.linear * shares, angular: response.angular * shares }
-            },
-        ));
-    }
-
-    /// Iterations of all contacts and joints on the displacements; one iteration by default.
-    pub fn iterate(&mut self, bodies: &mut Bodies) {
-        for _ in 0..self.settings.iterations {
-            let at_once = self.solver.at_once();
-            let backward = self.backward;
-            self.backward = !backward;
-            let order = match (at_once, backward) {
-                (true, _) => Order::AtOnce(&mut self.jacobi),
-                (false, false) => Order::InTurn,
-                (false, true) => Order::Backward,
-            };
-            let (rows, joints) = (self.narrow_phase.rows(), &mut self.joints[..]);
-            let masses = seen(&self.scaled, &bodies.inverse_masses);
-            self.solver.sweep(Sweep { order, rows, joints, masses, motion: &mut bodies.displacements });
-        }
     }
 
     /// Ends a frame of length `frame_time` [s]: mean forces on walls, and sleep. Call it before
@@ -321,7 +245,7 @@ impl Contacts {
         self.narrow_phase.contacts().iter().filter(|contact| contact.is_pressed()).map(|contact| (contact.a, contact.b))
     }
 
-    /// The rows of the contacts that carry a load.
+    /// The rows of the contacts that carry a load, as of [`Contacts::note_impulses`].
     pub(crate) fn held_rows(&self) -> impl Iterator<Item = HeldRow> + '_ {
         self.narrow_phase.contacts().iter().flat_map(|contact| {
             let (n, pressed) = (contact.normal, |point: &&Point| point.normal_impulse > 0.0);

@@ -4,16 +4,16 @@
 //! their gaps and arms are measured at the poses of the bodies.
 
 use super::contact_cache::ContactCache;
-use super::contact_set::{ContactSet, Rows, StepContext};
+use super::contact_set::{ContactSet, Rows};
 use super::frames::Frames;
 use super::manifold::Contact;
 use super::pair_contacts::PairContacts;
 use super::pairs::{Pairs, Span};
 use super::pieces::Pieces;
 use super::reach::Reach;
+use super::step_context::StepContext;
 use crate::parallel::Parallelism;
-use crate::rigid::Bodies;
-use crate::rigid::Wall;
+use crate::rigid::{Bodies, InverseMass, Twist, Wall};
 use crate::scene::FrictionRule;
 use rayon::prelude::*;
 
@@ -33,6 +33,9 @@ pub(super) struct NarrowPhase {
     #[serde(skip)]
     frames: Frames,
     found: ContactSet,
+    /// Whether a contact can rebound.
+    #[serde(skip)]
+    elastic: bool,
     /// Buffer of the search.
     #[serde(skip)]
     coming: ContactSet,
@@ -88,7 +91,8 @@ impl NarrowPhase {
         let (found, frozen, parallelism) = (saved.found, saved.frozen, self.parallelism);
         let reach = saved.reach.at_saved(bodies.len())?;
         let walls = self.walls.clone();
-        Some(NarrowPhase { pieces, walls, pairs, reach, found, frozen, parallelism, ..NarrowPhase::default() })
+        let elastic = found.is_elastic();
+        Some(NarrowPhase { pieces, walls, pairs, reach, found, elastic, frozen, parallelism, ..NarrowPhase::default() })
     }
 
     /// Disables collisions between these pairs of bodies, and enables all others.
@@ -127,34 +131,65 @@ impl NarrowPhase {
         self.reach.begin_frame(frame);
     }
 
-    /// Scales the impulses of the last substep to this one.
-    pub fn age(&mut self, kept: f64) {
-        let parallelism = self.parallelism;
-        each(self.rows(), parallelism, |contact, cache| contact.age(cache, kept));
+    /// Whether a contact can rebound.
+    pub fn is_elastic(&self) -> bool {
+        self.elastic
     }
 
-    /// Searches the contacts of the bodies that need it, with the impulses of the last substep, and measures all.
-    pub fn find(&mut self, bodies: &Bodies, moment: &StepContext) {
+    /// Searches the contacts of the bodies that need it, with the impulses of the last substep; whether there were any.
+    pub fn search(&mut self, bodies: &Bodies, moment: &StepContext) -> bool {
         let added = self.pieces.append_bodies(bodies);
         self.pairs.renumber(&self.pieces, added);
         self.frames.update(bodies, moment.gravity);
         let gravity = moment.gravity.length();
         let marked = self.reach.mark(bodies, moment.dt, gravity);
-        if self.pairs.note_woken(bodies, &mut self.reach) | marked {
+        let wanted = self.pairs.note_woken(bodies, &mut self.reach) | marked;
+        if wanted {
             self.pieces.update(bodies, &self.frames);
             self.pairs.update(&self.pieces, bodies, &mut self.reach, gravity);
-            self.collide(moment.dt);
+            self.collide(moment.last_dt);
             self.adopt();
         }
-        let frames = std::mem::take(&mut self.frames);
-        let parallelism = self.parallelism;
-        each(self.rows(), parallelism, |contact, cache| {
-            let of = [frames.of(contact.a), frames.of(contact.b)];
+        wanted
+    }
+
+    /// Measures all contacts at the poses of the search.
+    pub fn measure(&mut self) {
+        let (rows, frames) = ((&mut self.found.contacts[..], &mut self.found.caches[..]), &self.frames);
+        each(rows, self.parallelism, |contact, cache| contact.measure(cache, frames.both((contact.a, contact.b))));
+    }
+
+    /// Opens the substep of the search: measures all contacts, scales their impulses by `kept`, and prepares them for
+    /// bodies of these velocities and inverse masses. Their rows go to `and_then`, in order.
+    pub fn open(
+        &mut self,
+        velocities: &[Twist],
+        masses: &[InverseMass],
+        (moment, kept): (&StepContext, f64),
+        mut and_then: impl FnMut(&[Contact]),
+    ) {
+        let frames = &self.frames;
+        let open = |contact: &mut Contact, cache: &mut ContactCache| {
+            contact.age(cache, kept);
+            let of = frames.both((contact.a, contact.b));
             contact.measure(cache, of);
-            cache.pull = (of[0].pull - of[1].pull).dot(contact.normal);
-            contact.note_velocities(cache, &bodies.velocities, moment.slow, moment.dt);
-        });
-        self.frames = frames;
+            if cache.surface.restitution > 0.0 {
+                cache.pull = (of[0].pull - of[1].pull).dot(contact.normal);
+            }
+            contact.note_velocities(cache, velocities, moment);
+            contact.prepare(masses);
+        };
+        let ContactSet { contacts, caches, .. } = &mut self.found;
+        if is_parallel(contacts, self.parallelism) {
+            each((contacts, caches), self.parallelism, open);
+            and_then(contacts);
+            return;
+        }
+        // What was prepared is still near the processor.
+        for (contacts, caches) in contacts.chunks_mut(CHUNK).zip(caches.chunks_mut(CHUNK)) {
+            contacts.iter_mut().zip(caches).for_each(|(contact, cache)| open(contact, cache));
+            and_then(contacts);
+        }
     }
 
     /// Ends a substep of this length [s].
@@ -168,7 +203,9 @@ impl NarrowPhase {
         for active in &self.pairs.active {
             self.pairs.spans[active.index as usize] = Span::default();
         }
+        self.elastic = false;
         for (cache, index) in self.found.caches.iter().zip(0u32..) {
+            self.elastic |= cache.surface.restitution > 0.0;
             let span = &mut self.pairs.spans[cache.pair as usize];
             if span.count == 0 {
                 span.first = index;
@@ -203,7 +240,8 @@ impl NarrowPhase {
         self.frozen = frozen;
     }
 
-    /// The narrow phase over all active pairs; contacts come in the order of the pairs.
+    /// The narrow phase over all active pairs; contacts come in the order of the pairs, with the impulses of a substep of
+    /// length `dt`.
     fn collide(&mut self, dt: f64) {
         let (mut coming, mut tasks) = (std::mem::take(&mut self.coming), std::mem::take(&mut self.tasks));
         coming.clear();
@@ -225,10 +263,14 @@ impl NarrowPhase {
 
 /// Applies a rule to each contact on its own.
 fn each((contacts, caches): Rows<'_>, parallelism: Parallelism, rule: impl Fn(&mut Contact, &mut ContactCache) + Sync) {
-    if contacts.len() < PARALLEL_FROM || parallelism == Parallelism::Serial {
-        contacts.iter_mut().zip(caches).for_each(|(contact, cache)| rule(contact, cache));
-    } else {
+    if is_parallel(contacts, parallelism) {
         let rows = contacts.par_chunks_mut(CHUNK).zip(caches.par_chunks_mut(CHUNK));
         rows.for_each(|(contacts, caches)| contacts.iter_mut().zip(caches).for_each(|(c, cache)| rule(c, cache)));
+    } else {
+        contacts.iter_mut().zip(caches).for_each(|(contact, cache)| rule(contact, cache));
     }
+}
+
+fn is_parallel(contacts: &[Contact], parallelism: Parallelism) -> bool {
+    contacts.len() >= PARALLEL_FROM && parallelism != Parallelism::Serial
 }

@@ -1,7 +1,7 @@
 //! Contacts of one pair: those of the last search while they hold, else searched by the narrow phase.
 
 use super::collide;
-use super::contact_cache::ContactCache;
+use super::contact_cache::{ContactCache, Rebound};
 use super::contact_set::ContactSet;
 use super::frames::{Frame, Frames};
 use super::manifold::Contact;
@@ -16,7 +16,7 @@ pub(super) struct PairContacts<'a> {
     pub pairs: &'a Pairs,
     pub reach: &'a Reach,
     pub frames: &'a Frames,
-    /// Length of the substep [s].
+    /// Length of the last substep, whose impulses are kept [s].
     pub dt: f64,
     /// Contacts of the last substep.
     pub last: &'a ContactSet,
@@ -101,11 +101,12 @@ fn keep((contact, cache): (&mut Contact, &ContactCache), known: (&[Contact], &[C
             of_a.length_squared().min(of_b.length_squared()) < near * near
         };
         let same = old().find(|(_, old, j)| old.features[*j] == cache.features[k]).or_else(|| old().find(close));
-        if let Some((old, _, j)) = same {
-            contact.points_mut()[k].keep(&old.points()[j], scale);
+        if let Some((old, old_cache, j)) = same {
+            let kept = if old_cache.rebound[j] == Rebound::default() { scale } else { 0.0 };
+            contact.points_mut()[k].keep(&old.points()[j], kept);
         }
     }
-    if let Some(first) = known.0.first() {
-        contact.rolling_impulse = first.rolling_impulse * scale;
+    if let (Some(first), Some(old_cache)) = (known.0.first(), known.1.first()) {
+        contact.rolling_impulse = if old_cache.rebounded() { 0.0 } else { first.rolling_impulse * scale };
     }
 }

@@ -1,8 +1,8 @@
 //! Pairs of pieces that may touch. The search is repeated only when a piece may leave its enlarged box.
 
 use super::bounds::{Bounds, NONE};
-use super::broad;
-use super::pieces::Pieces;
+use super::broad::Broad;
+use super::pieces::{Piece, Pieces};
 use super::reach::Reach;
 use crate::math::Vector64;
 use crate::rigid::{Bodies, Surface};
@@ -69,6 +69,20 @@ pub(super) struct Pairs {
     pub active: Vec<Active>,
     /// Flags of the bodies that were movable when `active` was listed.
     was_active: Vec<bool>,
+    #[serde(skip)]
+    scratch: Scratch,
+}
+
+/// Buffers of the search.
+#[derive(Clone, Default)]
+struct Scratch {
+    broad: Broad,
+    /// Pieces that may leave their enlarged boxes, and a flag for each piece.
+    leaving: Vec<u32>,
+    leaves: Vec<bool>,
+    found: Vec<(u32, u32)>,
+    all: Vec<Pair>,
+    spans: Vec<Span>,
 }
 
 /// A pair with at least one movable body.
@@ -155,62 +169,89 @@ impl Pairs {
     pub fn update(&mut self, pieces: &Pieces, bodies: &Bodies, reach: &mut Reach, gravity: f64) {
         reach.note(bodies);
         reach.allow(bodies, gravity, self.all.iter().map(|pair| pair.bodies));
-        if !self.hold(pieces, bodies, reach) {
-            self.pair_up(pieces, bodies, reach, gravity);
-        } else if self.was_active.len() != bodies.len()
+        let mut changed = false;
+        // A body near a fast body can be as fast after a collision: with the pairs known, both get the same allowance.
+        for _ in 0..2 {
+            self.find_leaving(pieces, bodies, reach);
+            if self.scratch.leaving.is_empty() {
+                break;
+            }
+            if !self.renew(pieces, bodies, reach) {
+                break;
+            }
+            changed = true;
+            reach.allow(bodies, gravity, self.all.iter().map(|pair| pair.bodies));
+        }
+        if changed
+            || self.was_active.len() != bodies.len()
             || (0..bodies.len()).any(|id| self.was_active[id] != bodies.is_active(id))
         {
             self.list_active(bodies);
         }
     }
 
-    /// Whether every wanted piece stays in its enlarged box.
-    fn hold(&self, pieces: &Pieces, bodies: &Bodies, reach: &Reach) -> bool {
-        let moved = pieces.all.iter().zip(&pieces.bounds);
-        self.fat.len() == pieces.all.len()
-            && moved.zip(&self.fat).all(|((piece, bounds), fat)| {
-                !reach.is_wanted(piece.body)
-                    || !bodies.is_active(piece.body as usize)
-                    || fat.holds(&swept(bounds, reach, piece.body, 1.0, 0.0))
-            })
+    /// Finds the wanted pieces that may leave their enlarged boxes; all pieces, if there are no boxes yet.
+    fn find_leaving(&mut self, pieces: &Pieces, bodies: &Bodies, reach: &Reach) {
+        let Scratch { leaving, leaves, .. } = &mut self.scratch;
+        let anew = self.fat.len() != pieces.all.len();
+        let leaves_box = |(k, piece): (usize, &Piece)| {
+            anew || (reach.is_wanted(piece.body)
+                && bodies.is_active(piece.body as usize)
+                && !self.fat[k].holds(&swept(&pieces.bounds[k], reach, piece.body, 1.0, 0.0)))
+        };
+        leaves.clear();
+        leaves.extend(pieces.all.iter().enumerate().map(leaves_box));
+        leaving.clear();
+        leaving.extend((0..).zip(leaves.iter()).filter(|(_, leaves)| **leaves).map(|(k, _): (u32, _)| k));
     }
 
-    /// Searches the pairs again, with room for several frames.
-    fn pair_up(&mut self, pieces: &Pieces, bodies: &Bodies, reach: &mut Reach, gravity: f64) {
-        let mut found = self.seek(pieces, bodies, reach);
-        // A body near a fast body can be as fast after a collision: with the pairs known, both get the same allowance.
-        let of = |&(a, b): &(u32, u32)| (pieces.body_of(a), pieces.body_of(b));
-        reach.allow(bodies, gravity, found.iter().map(of));
-        if !self.hold(pieces, bodies, reach) {
-            found = self.seek(pieces, bodies, reach);
-            reach.allow(bodies, gravity, found.iter().map(of));
+    /// New boxes, with room for several frames, for the pieces that leave theirs, and their pairs; whether the list of
+    /// pairs changed.
+    fn renew(&mut self, pieces: &Pieces, bodies: &Bodies, reach: &Reach) -> bool {
+        self.fat.resize(pieces.all.len(), Bounds::EMPTY);
+        for &k in &self.scratch.leaving {
+            let (piece, bounds) = (&pieces.all[k as usize], &pieces.bounds[k as usize]);
+            self.fat[k as usize] = match piece.body {
+                NONE => *bounds,
+                body => swept(bounds, reach, body, ROOM, 0.05 * piece.size),
+            };
         }
-        self.replace(pieces, &found);
-        self.list_active(bodies);
+        let Scratch { broad, leaving, leaves, found, .. } = &mut self.scratch;
+        let allowed = |a: u32, b: u32| may_touch(pieces, &self.excluded, bodies, a.min(b), a.max(b));
+        broad.pairs(pieces, &self.fat, (leaving, leaves), allowed, found);
+        self.replace(pieces)
     }
 
-    /// Replaces the list of pairs; pairs that are in the old list keep their data.
-    fn replace(&mut self, pieces: &Pieces, found: &[(u32, u32)]) {
-        let spans = std::mem::take(&mut self.spans);
-        let mut old = std::mem::take(&mut self.all).into_iter().zip(spans).peekable();
-        for &key in found {
-            while old.next_if(|(pair, _)| pair.key < key).is_some() {}
-            let known = old.next_if(|(pair, _)| pair.key == key);
-            let (pair, span) = known.unwrap_or_else(|| (Pair::new(pieces, key), Span::default()));
-            self.all.push(pair);
-            self.spans.push(span);
+    /// Replaces the pairs of the pieces that leave their boxes by those found; pairs that are in the old list keep their
+    /// data. Returns whether the list changed.
+    fn replace(&mut self, pieces: &Pieces) -> bool {
+        let Scratch { leaves, found, all, spans, .. } = &mut self.scratch;
+        let left = |pair: &Pair| {
+            let (a, b) = pair.key;
+            leaves[a as usize] || leaves.get(b as usize).is_some_and(|leaves| *leaves)
+        };
+        if self.all.iter().filter(|pair| left(pair)).map(|pair| pair.key).eq(found.iter().copied()) {
+            return false;
         }
-    }
-
-    fn seek(&mut self, pieces: &Pieces, bodies: &Bodies, reach: &Reach) -> Vec<(u32, u32)> {
-        let mut fat = std::mem::take(&mut self.fat);
-        fat.clear();
-        fat.extend(pieces.all.iter().zip(&pieces.bounds).map(|(piece, bounds)| match piece.body {
-            NONE => *bounds,
-            body => swept(bounds, reach, body, ROOM, 0.05 * piece.size),
-        }));
-        self.fat = fat;
-        broad::pairs(pieces, &self.fat, |a, b| may_touch(pieces, &self.excluded, bodies, a.min(b), a.max(b)))
+        let mut new = found.iter().copied().peekable();
+        let add = |key: (u32, u32), all: &mut Vec<Pair>, spans: &mut Vec<Span>| {
+            all.push(Pair::new(pieces, key));
+            spans.push(Span::default());
+        };
+        for (pair, span) in self.all.drain(..).zip(&self.spans) {
+            while let Some(key) = new.next_if(|key| *key < pair.key) {
+                add(key, all, spans);
+            }
+            if new.next_if_eq(&pair.key).is_some() || !left(&pair) {
+                all.push(pair);
+                spans.push(*span);
+            }
+        }
+        new.for_each(|key| add(key, all, spans));
+        self.spans.clear();
+        std::mem::swap(&mut self.all, all);
+        std::mem::swap(&mut self.spans, spans);
+        true
     }
 
     fn list_active(&mut self, bodies: &Bodies) {

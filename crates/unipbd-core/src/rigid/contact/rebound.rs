@@ -4,7 +4,7 @@
 //! Velocities are those of a leapfrog scheme, half a step of gravity behind the positions: with both, the height of
 //! an elastic rebound is exact at every step. Friction of the rebound has the limit of both normal impulses together.
 
-use super::complementarity::{self, Coupling};
+use super::complementarity;
 use super::contact_cache::{ContactCache, Rebound};
 use super::manifold::{Contact, entry};
 use super::push::Push;
@@ -49,9 +49,7 @@ impl Contact {
         for (k, point) in self.points().iter().enumerate() {
             excess[k] = self.opening(point, &a, &b) - cache.rebound[k].velocity;
         }
-        let Coupling { first, second, off } = self.effective_mass.normal;
-        let keep = |acts: bool, gain: f64| if acts { gain } else { 0.0 };
-        let coupling = Coupling { first: keep(acts[0], first), second: keep(acts[1], second), off };
+        let coupling = self.effective_mass.normal.restricted_to(acts);
         let old = cache.rebound.map(|rebound| rebound.normal);
         let mut lower = [0.0; 2];
         for (lower, point) in lower.iter_mut().zip(self.points()) {
@@ -69,7 +67,7 @@ impl Contact {
                 + point.tangent_b * turned_b;
             let share = if all > 0.0 { normal / all } else { 0.0 };
             let (limit, held) = (self.effective_mass.friction * normal, point.tangent_impulse / dt);
-            let stop = slide * share / self.effective_mass.tangent[k];
+            let stop = slide * share * self.effective_mass.tangent[k];
             let tangent = (held + cache.rebound[k].tangent - stop).clamp(-limit, limit) - held;
             self.add_push(&mut push, point, change[k], tangent - cache.rebound[k].tangent);
             (cache.rebound[k].normal, cache.rebound[k].tangent) = (total[k], tangent);

@@ -1,5 +1,6 @@
 //! Contacts and joints from a saved state: what the scene decides is kept from the run, what a run changes is checked.
 
+use super::blocks::Blocks;
 use super::joint_set::apart;
 use super::{Contacts, Islands, Jacobi, JointKind, Limits, Linked};
 use crate::rigid::Bodies;
@@ -29,6 +30,7 @@ impl Contacts {
             watch: self.watch.clone(),
             islands: Islands::from_saved(saved.islands, bodies.len()),
             jacobi,
+            blocks: Blocks::default(),
             split: Vec::new(),
             scaled: Vec::new(),
             counts: Vec::new(),
@@ -36,10 +38,12 @@ impl Contacts {
             wall_impulses: saved.wall_impulses,
             wall_forces: saved.wall_forces,
             wall_names: self.wall_names.clone(),
+            rebounding: false,
             backward: saved.backward,
             dt: saved.dt,
             settings: self.settings,
             solver: self.solver.clone(),
+            moment: self.moment,
             warm_factor: self.warm_factor,
             gravity: self.gravity,
             up: self.up,

@@ -65,8 +65,11 @@ impl Depenetration {
     /// Minus the part of an overlap that a substep removes between bodies of this size [m]. `fall` is twice the
     /// gravity times the square of the substep [m].
     pub(super) fn lacking(&self, overlap: f64, size: f64, fall: f64) -> f64 {
-        let farthest = if fall > 0.0 { self.speed * (fall * size).sqrt() } else { f64::INFINITY };
         let overlap = overlap - self.slop * size;
+        if overlap <= 0.0 {
+            return 0.0;
+        }
+        let farthest = if fall > 0.0 { self.speed * (fall * size).sqrt() } else { f64::INFINITY };
         let deep = (overlap - self.deep * size).max(0.0);
         -(self.fraction * overlap + (self.deep_fraction - self.fraction) * deep).clamp(0.0, farthest)
     }

@@ -16,7 +16,7 @@ pub(crate) trait ContactSolver: Send + Sync {
         1.0
     }
 
-    /// One iteration of all contacts and joints on the displacements of the substep.
+    /// One iteration of all contacts and joints on the displacements of the substep, where they act at once.
     fn sweep(&self, sweep: Sweep<'_>) {
         sweep.run(|contact, _, displacements| contact.solve(displacements), Linked::solve);
     }

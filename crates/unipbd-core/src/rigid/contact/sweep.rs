@@ -15,8 +15,6 @@ pub(crate) enum Order<'a> {
     AtOnce(&'a mut Jacobi),
     /// One after the other (Gauss-Seidel), joints last.
     InTurn,
-    /// The same from the last to the first.
-    Backward,
 }
 
 /// The input of a pass: motion of the bodies, and how they respond.
@@ -57,13 +55,6 @@ impl Sweep<'_> {
                 }
                 turn_joints(joints, masses, motion, joint);
             }
-            Order::Backward => {
-                turn_joints(joints, masses, motion, joint);
-                for (row, cache) in rows.0.iter_mut().zip(rows.1).rev() {
-                    let push = contact(row, cache, motion);
-                    apply((row.a, row.b), &push, masses, motion);
-                }
-            }
         }
     }
 
@@ -73,7 +64,8 @@ impl Sweep<'_> {
     }
 }
 
-fn turn_joints(
+/// Moves the bodies of joints, one after the other.
+pub(super) fn turn_joints(
     joints: &mut [Linked],
     masses: &[InverseMass],
     motion: &mut [Twist],

@@ -56,6 +56,10 @@ fn index(index: u32) -> Option<u32> {
 }
 
 impl Watch {
+    pub fn is_on(&self) -> bool {
+        self.on
+    }
+
     /// Adds the impulse of a contact in a substep [N s].
     pub fn add(&mut self, contact: &Contact, wall: u32, impulse: Vector64) {
         if self.on {

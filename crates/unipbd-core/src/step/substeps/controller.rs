@@ -62,6 +62,11 @@ impl SubstepRule {
         }
     }
 
+    /// Whether the number is that of the scene, whatever happens.
+    pub fn is_fixed(&self) -> bool {
+        matches!(self.substeps, Substeps::Fixed(_))
+    }
+
     /// Substeps for a frame of this length [s], the first of a run.
     pub fn choose(&self, frame: f64, demand: Demand) -> Choice {
         self.choose_after(0, frame, demand)
@@ -93,8 +98,7 @@ impl SubstepRule {
     /// grows frame by frame. The target compression is still met, unless most of the energy is stored: then it grows by
     /// what adds little energy, and a compression above the target is warned of.
     pub fn stiffness_after(&self, last: u32, before: f64, frame: f64, demand: Demand, substeps: u32) -> f64 {
-        let fixed = matches!(self.substeps, Substeps::Fixed(_));
-        if fixed || last == 0 || !self.law.stores_energy() {
+        if self.is_fixed() || last == 0 || !self.law.stores_energy() {
             return 1.0;
         }
         let square = |part: f64| part * part;

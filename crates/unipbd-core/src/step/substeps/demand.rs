@@ -57,7 +57,7 @@ impl World {
         let emitted = parts.emitters.as_ref().map_or(0.0, |emitters| emitters.speed_max(self.clock.time));
         let moving = if self.clock.step == 0 { self.fastest() } else { self.clock.speed };
         let of_bodies = |rigid: &RigidBodies| rigid.demand(parts.frame_time, wide(parts.gravity));
-        let bodies = parts.rigid.as_ref().map(of_bodies).unwrap_or_default();
+        let bodies = parts.rigid.as_ref().filter(|_| !parts.substeps.is_fixed()).map(of_bodies).unwrap_or_default();
         // Pressure from the relative motion within the liquids.
         let dynamic = self.square_of_relative_speed(liquids, is_liquid);
         let known = if self.clock.step == 0 { 0.0 } else { liquids.pressure(self.clock.dt) };

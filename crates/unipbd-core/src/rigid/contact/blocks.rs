@@ -1,0 +1,217 @@
+//! Contacts in blocks of four that share no body, for the lanes of a sweep.
+//!
+//! Contacts that share a body keep their order from block to block, so that a sweep over the blocks moves the bodies as
+//! a sweep over the contacts one after the other would: it is the same for every number of lanes and threads.
+
+use super::bounds::NONE;
+use super::manifold::Contact;
+use crate::math::Real;
+use crate::rigid::{Bodies, InverseMass, Twist};
+use crate::simd::wide::WIDE;
+
+/// One number of each lane. Those that hardly change within a substep have the precision of particles: a sweep is bound
+/// by memory. Impulses, masses and motion do not.
+pub(super) type Lane = [Real; WIDE];
+pub(super) type Exact = [f64; WIDE];
+
+/// Gap of a point that is not there [m].
+const FAR: f64 = 1e12;
+
+/// Four contacts; a lane without one is all zero, and its bodies are the idle one.
+#[derive(Clone, Default)]
+pub(super) struct Block {
+    /// Rows of the motion of both bodies; walls and free lanes have the idle row behind all bodies.
+    pub bodies: [[u32; WIDE]; 2],
+    pub normal: [Lane; 2],
+    /// By point: gap [m], and moments about both centres of mass of unit impulses along normal and tangent [m].
+    pub gap: [Lane; 2],
+    pub normal_a: [Lane; 2],
+    pub normal_b: [Lane; 2],
+    pub tangent_a: [Lane; 2],
+    pub tangent_b: [Lane; 2],
+    /// Responses to normal impulses, and the inverse of their matrix: both points, and across.
+    pub response: [Lane; 3],
+    pub inverse: [Lane; 3],
+    /// By point: effective mass along the normal alone, and along the tangent [kg].
+    pub alone: [Lane; 2],
+    pub tangent: [Lane; 2],
+    pub friction: Lane,
+    /// 1 for two points with friction.
+    pub turns: Lane,
+    /// Way of moving surfaces along the tangent [m].
+    pub belt: Lane,
+    /// Size of the smaller body [m].
+    pub size: Lane,
+    /// Whether a lane resists rolling, the arms, and the effective masses.
+    pub rolls: bool,
+    pub rolling_arm: Lane,
+    pub rolling_mass: Exact,
+    /// Inverse masses and inertias of both bodies.
+    pub linear: [Exact; 2],
+    pub angular: [Exact; 2],
+    /// Impulses by point, and that against rolling.
+    pub normal_impulse: [Exact; 2],
+    pub tangent_impulse: [Exact; 2],
+    pub rolling_impulse: Exact,
+}
+
+/// All contacts of a substep in blocks.
+#[derive(Clone, Default)]
+pub(super) struct Blocks {
+    pub all: Vec<Block>,
+    /// Block and lane of each contact, as WIDE x block + lane.
+    slots: Vec<u32>,
+    /// The contact in each lane, or [`NONE`].
+    holders: Vec<[u32; WIDE]>,
+    /// Motion of the bodies: along x and y, rotation, and nothing. The last row is idle.
+    pub motion: Vec<Exact>,
+    /// The block after the last one of each body, in the assignment.
+    next: Vec<u32>,
+    /// Contacts in each block, and a block at or behind it with room.
+    filled: Vec<u8>,
+    room: Vec<u32>,
+}
+
+impl Blocks {
+    /// Gives each contact the first block behind those of the contacts before it that share one of its bodies.
+    pub fn assign(&mut self, contacts: &[Contact], bodies: &Bodies) {
+        self.next.clear();
+        self.next.resize(bodies.len(), 0);
+        self.filled.clear();
+        self.room.clear();
+        self.slots.clear();
+        self.holders.clear();
+        for (contact, number) in contacts.iter().zip(0u32..) {
+            // What contacts do not move may be in all lanes at once.
+            let moved = |body: &u32| *body != NONE && bodies.is_dynamic(*body as usize);
+            let sides = [contact.a, contact.b];
+            let first = sides.iter().filter(|body| moved(body)).map(|&body| self.next[body as usize]).max();
+            let block = self.find_room(first.unwrap_or(0));
+            let lane = self.filled[block as usize];
+            self.slots.push(WIDE as u32 * block + u32::from(lane));
+            self.holders[block as usize][usize::from(lane)] = number;
+            self.filled[block as usize] += 1;
+            if usize::from(lane) + 1 == WIDE {
+                self.room[block as usize] = block + 1;
+            }
+            for body in sides.into_iter().filter(moved) {
+                self.next[body as usize] = block + 1;
+            }
+        }
+        // The lanes with a contact are filled in each substep.
+        let idle = Block { bodies: [[bodies.len() as u32; WIDE]; 2], ..Block::default() };
+        self.all.resize(self.filled.len(), Block::default());
+        for (block, _) in self.all.iter_mut().zip(&self.filled).filter(|(_, filled)| usize::from(**filled) < WIDE) {
+            block.clone_from(&idle);
+        }
+    }
+
+    /// Whether these are the blocks of so many contacts and bodies.
+    pub fn fits(&self, contacts: usize, bodies: usize) -> bool {
+        self.slots.len() == contacts && self.next.len() == bodies
+    }
+
+    /// The block of a contact.
+    #[cfg(test)]
+    pub fn block_of(&self, contact: usize) -> usize {
+        self.slots[contact] as usize / WIDE
+    }
+
+    fn find_room(&mut self, from: u32) -> u32 {
+        let mut block = from;
+        loop {
+            if block as usize >= self.room.len() {
+                self.room.push(block);
+                self.filled.push(0);
+                self.holders.push([NONE; WIDE]);
+            }
+            let behind = self.room[block as usize];
+            if behind == block {
+                break;
+            }
+            block = behind;
+        }
+        // The next search takes the short way.
+        let mut passed = from;
+        while passed != block {
+            passed = std::mem::replace(&mut self.room[passed as usize], block);
+        }
+        block
+    }
+
+    /// Fills the lanes with the prepared contacts, block by block.
+    pub fn fill(&mut self, contacts: &[Contact], masses: &[InverseMass], sizes: &[f64]) {
+        for (block, holders) in self.all.iter_mut().zip(&self.holders) {
+            for (lane, &holder) in holders.iter().enumerate().filter(|(_, holder)| **holder != NONE) {
+                contacts[holder as usize].fill(block, lane, masses, sizes);
+            }
+            block.rolls = block.rolling_arm != [0.0; WIDE];
+        }
+    }
+
+    /// Gives a contact, by its number, the impulses of its lane.
+    pub fn give_back(&self, number: usize, contact: &mut Contact) {
+        let slot = self.slots[number] as usize;
+        contact.take_impulses(&self.all[slot / WIDE], slot % WIDE);
+    }
+
+    /// Takes the motion of the bodies.
+    pub fn take_motion(&mut self, motion: &[Twist]) {
+        self.motion.clear();
+        self.motion.extend(motion.iter().map(|of| [of.linear.x, of.linear.y, of.angular, 0.0]));
+        self.motion.push([0.0; WIDE]);
+    }
+
+    /// Gives the motion back to the bodies.
+    pub fn give_motion(&self, motion: &mut [Twist]) {
+        for (of, &[x, y, angular, _]) in motion.iter_mut().zip(&self.motion) {
+            (of.linear.x, of.linear.y, of.angular) = (x, y, angular);
+        }
+    }
+}
+
+impl Contact {
+    /// Fills a lane with the prepared contact.
+    fn fill(&self, block: &mut Block, lane: usize, masses: &[InverseMass], sizes: &[f64]) {
+        let idle = masses.len() as u32;
+        let (a, b) = (self.a as usize, self.b as usize);
+        for (side, body) in [self.a, self.b].into_iter().enumerate() {
+            block.bodies[side][lane] = body.min(idle);
+            let mass = masses.get(body as usize).copied().unwrap_or_default();
+            (block.linear[side][lane], block.angular[side][lane]) = (mass.linear, mass.angular);
+        }
+        let mut set = |of: fn(&mut Block) -> &mut Lane, value: f64| of(block)[lane] = value as Real;
+        set(|block| &mut block.normal[0], self.normal.x);
+        set(|block| &mut block.normal[1], self.normal.y);
+        let mass = &self.effective_mass;
+        let (response, inverse, alone) = mass.normal.matrices();
+        set(|block| &mut block.friction, mass.friction);
+        set(|block| &mut block.belt, mass.belt);
+        set(|block| &mut block.rolling_arm, self.rolling_arm);
+        set(|block| &mut block.turns, if self.points().len() == 2 && mass.friction > 0.0 { 1.0 } else { 0.0 });
+        set(|block| &mut block.size, sizes.get(b).map_or(sizes[a], |size| size.min(sizes[a])));
+        for k in 0..3 {
+            (block.response[k][lane], block.inverse[k][lane]) = (response[k] as Real, inverse[k] as Real);
+        }
+        for k in 0..2 {
+            let point = self.points().get(k).copied().unwrap_or_else(super::contact_cache::Point::absent);
+            block.gap[k][lane] = point.gap.min(FAR) as Real;
+            (block.normal_a[k][lane], block.normal_b[k][lane]) = (point.normal_a as Real, point.normal_b as Real);
+            (block.tangent_a[k][lane], block.tangent_b[k][lane]) = (point.tangent_a as Real, point.tangent_b as Real);
+            (block.alone[k][lane], block.tangent[k][lane]) = (alone[k] as Real, mass.tangent[k] as Real);
+            block.normal_impulse[k][lane] = point.normal_impulse;
+            block.tangent_impulse[k][lane] = point.tangent_impulse;
+        }
+        block.rolling_impulse[lane] = self.rolling_impulse;
+        let turning = mass.turning.0 + mass.turning.1;
+        block.rolling_mass[lane] = super::complementarity::inverse(turning);
+    }
+
+    fn take_impulses(&mut self, block: &Block, lane: usize) {
+        self.rolling_impulse = block.rolling_impulse[lane];
+        for (k, point) in self.points_mut().iter_mut().enumerate() {
+            point.normal_impulse = block.normal_impulse[k][lane];
+            point.tangent_impulse = block.tangent_impulse[k][lane];
+        }
+    }
+}
