@@ -8,6 +8,7 @@ mod emitters;
 mod filled_gas;
 mod import_circles;
 mod liquids;
+mod loads;
 mod obstacles;
 mod outlines;
 mod plume;

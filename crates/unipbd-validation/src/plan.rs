@@ -5,7 +5,7 @@ use unipbd_core::scene::{PressureGridUse, SolverSettings};
 use crate::case::Case;
 
 /// Cases of one liquid in static walls, and near enough ones: they run with the pressure grid too.
-const WITH_GRID: [&str; 4] = ["column", "dam_break", "standing_wave", "elliptical_drop"];
+const WITH_GRID: [&str; 5] = ["column", "dam_break", "standing_wave", "elliptical_drop", "oscillating_drop"];
 
 /// The particles alone, with this target.
 pub fn settings(target: f64) -> SolverSettings {

@@ -3,9 +3,9 @@
 use std::time::{Duration, Instant};
 
 use cpu_time::ProcessTime;
-use unipbd_core::math::{Vector64, wide};
+use unipbd_core::math::{Vector64, vector, wide};
 use unipbd_core::scene::Scene;
-use unipbd_core::{BuildOptions, Edit, MaterialIndex, Solver};
+use unipbd_core::{BuildOptions, Edit, MaterialIndex, Solver, SolverError};
 
 /// Why a case gave nothing.
 #[derive(Clone, Debug)]
@@ -76,8 +76,23 @@ impl Runner {
     /// # Errors
     /// When the run diverges.
     pub fn frame(&mut self) -> Result<(), Failure> {
+        self.frame_under(None)
+    }
+
+    /// Advances by one frame under an acceleration that depends on the place [m/s^2].
+    fn frame_under(&mut self, field: Option<&dyn Fn(Vector64) -> Vector64>) -> Result<(), Failure> {
         let (start, processor) = (Instant::now(), ProcessTime::now());
-        let report = self.solver.step_frame().map_err(|error| Failure(error.to_string()))?;
+        let report = match field {
+            None => self.solver.step_frame(),
+            Some(field) => self.solver.step_frame_with(|substep| -> Result<(), SolverError> {
+                for row in 0..substep.positions().len() {
+                    let pull = field(wide(substep.positions()[row]));
+                    substep.add_acceleration(row, vector(pull));
+                }
+                Ok(())
+            }),
+        }
+        .map_err(|error| Failure(error.to_string()))?;
         self.cost.wall += start.elapsed();
         self.cost.processor += processor.elapsed();
         self.cost.substeps += u64::from(report.substeps);
@@ -94,6 +109,24 @@ impl Runner {
     pub fn frames(&mut self, count: u32, mut look: impl FnMut(&Solver)) -> Result<(), Failure> {
         for _ in 0..count.min(self.most) {
             self.frame()?;
+            look(&self.solver);
+        }
+        Ok(())
+    }
+
+    /// Advances by a stretch of frames under an acceleration that depends on the place [m/s^2], as
+    /// [`frames`](Self::frames) does without.
+    ///
+    /// # Errors
+    /// When the run diverges.
+    pub fn frames_under(
+        &mut self,
+        count: u32,
+        field: impl Fn(Vector64) -> Vector64,
+        mut look: impl FnMut(&Solver),
+    ) -> Result<(), Failure> {
+        for _ in 0..count.min(self.most) {
+            self.frame_under(Some(&field))?;
             look(&self.solver);
         }
         Ok(())

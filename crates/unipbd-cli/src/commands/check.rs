@@ -2,7 +2,7 @@
 
 use serde_json::{Value, json};
 use unipbd_core::BuildOptions;
-use unipbd_core::scene::{Scene, Substeps};
+use unipbd_core::scene::{Emitter, Scene, Substeps};
 
 use super::estimate::{Cost, emitted, particles};
 use super::info::bodies;
@@ -70,6 +70,7 @@ fn text(scene: &Scene, simulation: &Simulation, cost: &Cost) -> String {
         lines.push(format!("  substeps       {substeps}{choice}"));
     }
     lines.push(format!("  pressure grid  {}", pressure_grid(scene)));
+    lines.extend(scene.emitter.iter().enumerate().filter_map(|(number, emitter)| face(emitter, number, scene.spacing)));
     lines.push(format!(
         "  memory         {} at the start, about {} at the peak",
         bytes(cost.memory_at_start),
@@ -94,6 +95,18 @@ fn object(name: &str, scene: &Scene, cost: &Cost) -> Value {
         "pressure_grid": { "used": grid.used, "reason": grid.reason },
         "memory_bytes": { "at_start": cost.memory_at_start, "peak": cost.memory_at_peak },
         "wall_time": cost.wall_time.as_secs_f64(),
+    })
+}
+
+/// What an emitter does whose width is not a whole number of particles.
+fn face(emitter: &Emitter, number: usize, spacing: f64) -> Option<String> {
+    let (columns, apart) = emitter.columns(spacing);
+    let name = if emitter.name.is_empty() { number.to_string() } else { format!("{:?}", emitter.name) };
+    (apart != spacing).then(|| {
+        format!(
+            "  emitter        {name}: {columns} columns of particles {apart:.4} m apart keep the flow of its width of {} m",
+            emitter.width
+        )
     })
 }
 

@@ -36,6 +36,17 @@ impl RigidBodies {
         }
     }
 
+    /// Largest pressure by which a body may press on a fluid: that of its fall and of its weight [Pa].
+    pub(crate) fn pressure(&self, gravity: f64) -> f64 {
+        let bodies = &self.bodies;
+        let dynamic = (0..bodies.len()).filter(|&id| bodies.is_dynamic(id) && !bodies.asleep[id]);
+        let pressures = dynamic.map(|id| {
+            let (mass, size) = (1.0 / bodies.awake_responses[id].linear, bodies.sizes[id]);
+            mass / (size * size) * (0.5 * bodies.velocities[id].linear.length_squared() + gravity * size)
+        });
+        pressures.fold(0.0, f64::max)
+    }
+
     fn least(&self) -> f64 {
         let bodies = &self.bodies;
         let polygon = |id: u32| {

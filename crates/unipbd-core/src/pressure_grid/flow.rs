@@ -21,13 +21,14 @@ impl Flow<'_> {
             + (self.v[upper] * lower[upper] - self.v[cell] * lower[cell])
     }
 
-    /// The trace of the squared velocity gradient, in cell units: the compression by curved paths.
+    /// Minus the determinant of the velocity gradient, in cell units: the compression by curved paths. (The trace of the
+    /// squared gradient is twice that where the flow has no divergence; but squares of noise add up.)
     pub fn squeeze(&self, cell: usize) -> Real {
         let middle =
             |cell: usize| Vector::new(self.u[cell] + self.u[cell + 1], self.v[cell] + self.v[cell + self.stride]) * 0.5;
         let [left, right, lower, upper] = self.neighbors(cell).map(middle);
         let (along_x, along_y) = (right - left, upper - lower);
         let (ux, vy) = (self.u[cell + 1] - self.u[cell], self.v[cell + self.stride] - self.v[cell]);
-        ux * ux + vy * vy + 0.5 * along_x.y * along_y.x
+        0.25 * along_x.y * along_y.x - ux * vy
     }
 }

@@ -67,14 +67,13 @@ impl Scene {
 
 /// Particles and smoke markers that an emitter adds [1/s].
 fn rates(emitter: &Emitter, spacing: f64) -> (f64, f64) {
-    let row_rate = |width: f64, speed: f64| (width / spacing).round().max(1.0) * (speed / spacing).max(0.0);
+    let rate =
+        |(columns, apart): (usize, f64), speed: f64| columns as f64 * (apart / spacing) * (speed.max(0.0) / spacing);
     // The mean of 1 - s^2/2 over the face is 5/6.
     let mean = if emitter.profile == Profile::Parabolic { 5.0 / 6.0 } else { 1.0 };
-    let core = row_rate(emitter.width, emitter.speed * mean);
-    let sheath = emitter
-        .sheath
-        .as_ref()
-        .map_or(0.0, |sheath| 2.0 * row_rate(sheath.thickness, sheath.speed.unwrap_or(emitter.speed)));
+    let core = rate(emitter.columns(spacing), emitter.speed * mean);
+    let of_sheath = emitter.sheath.as_ref().map_or(0.0, |sheath| sheath.speed.unwrap_or(emitter.speed));
+    let sheath = 2.0 * rate(emitter.sheath_columns(spacing), of_sheath);
     let markers = emitter.smoke.as_ref().map_or(0.0, |smoke| core * f64::from(smoke.per_particle));
     (core + sheath, markers)
 }

@@ -74,8 +74,7 @@ impl Scene {
         if let Some(name) = self.thin_wall() {
             return PressureGridChoice::off(format!("its cells are too wide for the wall that the body {name} is"));
         }
-        let closed = self.tank.iter().any(|tank| tank.open.is_empty());
-        if !closed && self.materials().any(|material| material.is_two_sided()) {
+        if !self.has_closed_tank() && self.materials().any(|material| material.is_two_sided()) {
             return PressureGridChoice::off("gas in the open does not keep its momentum with it");
         }
         let particles = self.most_particles();
@@ -83,6 +82,11 @@ impl Scene {
             return PressureGridChoice::off(format!("{particles} particles are too few for it to pay"));
         }
         PressureGridChoice { used: true, reason: "substeps then follow the speed alone".into() }
+    }
+
+    /// Whether a tank is closed on all sides.
+    pub(crate) fn has_closed_tank(&self) -> bool {
+        self.tank.iter().any(|tank| tank.open.is_empty())
     }
 
     /// A body that no fluid moves and that is thinner than walls of the grid are.

@@ -59,7 +59,8 @@ pub struct Emitter {
     /// Direction of the flow; need not have length 1.
     #[serde(default = "up")]
     pub direction: [f64; 2],
-    /// Width of the face without the sheath [m].
+    /// Width of the face without the sheath [m]. The columns of particles are a whole number; they move apart or
+    /// together, and their rows the other way, so that the flow is that of the width.
     pub width: f64,
     /// Speed at the face [m/s].
     pub speed: f64,
@@ -148,6 +149,27 @@ impl Emitter {
             smoke: None,
         }
     }
+
+    /// Columns of particles across the core, and their distance [m], for this spacing [m]. Their number is whole; their
+    /// distance makes up for it, so that the flow is that of the width.
+    pub fn columns(&self, spacing: f64) -> (usize, f64) {
+        columns(self.width, spacing)
+    }
+
+    /// The same for each side of the sheath.
+    pub(crate) fn sheath_columns(&self, spacing: f64) -> (usize, f64) {
+        match &self.sheath {
+            Some(sheath) if sheath.thickness >= 0.5 * spacing => columns(sheath.thickness, spacing),
+            _ => (0, spacing),
+        }
+    }
+}
+
+/// Columns closer than half a spacing would stand a row apart that no neighbour reaches.
+fn columns(width: f64, spacing: f64) -> (usize, f64) {
+    let count = (width / spacing).round().max(1.0);
+    let exact = (width / spacing - count).abs() < 1e-9 * count;
+    (count as usize, if exact { spacing } else { (width / count).max(0.5 * spacing) })
 }
 
 fn up() -> [f64; 2] {

@@ -21,6 +21,8 @@ pub(crate) struct SubstepLaw {
     alone: bool,
     /// Whether all fluids have a surface.
     free: bool,
+    /// Whether particles alone hold gas in a closed tank: its buoyancy presses on the lid.
+    pub confines_gas: bool,
     /// D/omega of the law C_max = (D/omega) P dt^2/dx^2.
     compressibility: f64,
     /// What surface tension asks for.
@@ -31,21 +33,36 @@ impl SubstepLaw {
     pub fn new(scene: &Scene) -> Self {
         let (spacing, target) = (scene.spacing, scene.solver.target_compression);
         let tension = TensionLaw::new(scene);
+        let confines_gas = !scene.gas.is_empty() && scene.has_closed_tank() && !scene.uses_pressure_grid();
         let free = !scene.materials().any(|material| material.phase().is_fluid() && material.is_two_sided());
         if scene.uses_pressure_grid() {
             // The grid holds the pressure; the particles only what is left of it.
             let [least, most] = GRID_COURANT_RANGE;
             let courant = if free { GRID_COURANT } else { FILLED_GRID_COURANT };
             let courant = (courant * (target / 0.01).sqrt()).clamp(least, most);
-            return SubstepLaw { spacing, target, courant, alone: false, free, compressibility: 0.0, tension };
+            return SubstepLaw {
+                spacing,
+                target,
+                courant,
+                alone: false,
+                free,
+                confines_gas,
+                compressibility: 0.0,
+                tension,
+            };
         }
         let compressibility = scene.solver.compressibility(scene.gradients());
-        SubstepLaw { spacing, target, courant: COURANT, alone: true, free, compressibility, tension }
+        SubstepLaw { spacing, target, courant: COURANT, alone: true, free, confines_gas, compressibility, tension }
     }
 
     /// Whether the compression of its particles is what carries a fluid that can expand: then it stores energy.
     pub fn stores_energy(&self) -> bool {
         self.alone && self.free
+    }
+
+    /// Compression at which a start counts as one at rest.
+    pub fn rest_error(&self) -> f64 {
+        if self.free { 0.5 * self.target } else { -1.0 }
     }
 
     /// Largest pressure over density that surface tension may bring about [m^2/s^2].

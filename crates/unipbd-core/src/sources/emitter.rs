@@ -57,6 +57,8 @@ struct Markers {
 struct Column {
     /// Distance from the middle of the face [m].
     offset: f64,
+    /// Distance of its particles [m].
+    row: f64,
     speed: f64,
     temperature: Real,
     core: bool,
@@ -177,7 +179,7 @@ impl Nozzle {
 
     fn will_change(&self, time: f64, dt: f64) -> bool {
         let crossing = |(column, state): (&Column, &ColumnState)| {
-            state.progress + column.speed * self.state.throttle() * dt / self.spacing >= 1.0
+            state.progress + column.speed * self.state.throttle() * dt / column.row >= 1.0
         };
         self.is_active(time) != self.state.running
             || self.state.running && self.columns.iter().zip(&self.state.columns).any(crossing)
@@ -225,7 +227,7 @@ impl Nozzle {
     fn advance_column(&mut self, index: usize, dt: f64, particles: &mut Particles, rows: &RowIndex) {
         let column = &self.columns[index];
         let speed = column.speed * self.state.throttle();
-        self.state.columns[index].progress += speed * dt / self.spacing;
+        self.state.columns[index].progress += speed * dt / column.row;
         while self.state.columns[index].progress >= 1.0 {
             self.state.columns[index].progress -= 1.0;
             self.let_go(index, particles, rows);
@@ -258,13 +260,13 @@ impl Nozzle {
         behind[ROWS_BEHIND - 1] = last;
     }
 
-    /// Adds a particle of a column, `distance` spacings behind the face.
+    /// Adds a particle of a column, `distance` rows behind the face.
     fn add_behind(&mut self, index: usize, distance: f64, particles: &mut Particles) -> u32 {
         let column = &self.columns[index];
-        let (offset, speed, temperature) = (column.offset, column.speed, column.temperature);
+        let (offset, row, speed, temperature) = (column.offset, column.row, column.speed, column.temperature);
         let shift = self.random_vector() * self.jitter;
-        let place = self.position + self.direction.perp() * offset - self.direction * (distance * self.spacing)
-            + shift * self.spacing;
+        let place =
+            self.position + self.direction.perp() * offset - self.direction * (distance * row) + shift * self.spacing;
         particles.push(NewParticle {
             position: place,
             velocity: vector(self.direction * (speed * self.state.throttle())),
@@ -342,31 +344,32 @@ fn row_of(id: u32, particles: &Particles, rows: &RowIndex) -> Option<usize> {
     }
 }
 
-/// The columns of a face: one spacing apart, symmetric about the middle, the sheath outside the core.
+/// The columns of a face, symmetric about the middle, the sheath outside the core.
 fn columns(emitter: &Emitter, spacing: f64) -> Vec<Column> {
-    let thickness = emitter.sheath.as_ref().map_or(0.0, |sheath| sheath.thickness);
-    let core = (emitter.width / spacing).round().max(1.0);
-    let sheath = (thickness / spacing).round();
-    let count = (core + 2.0 * sheath) as usize;
-    let half = 0.5 * core * spacing;
-    let column = |index: usize| {
-        let offset = (index as f64 + 0.5) * spacing - half - sheath * spacing;
-        match &emitter.sheath {
-            Some(sheath) if offset.abs() > half => Column {
-                offset,
-                speed: sheath.speed.unwrap_or(emitter.speed),
-                temperature: real(sheath.temperature),
-                core: false,
-            },
-            _ => Column {
-                offset,
-                speed: emitter.speed * emitter.profile.factor(offset / half),
-                temperature: real(emitter.temperature),
-                core: true,
-            },
+    let (core, apart) = emitter.columns(spacing);
+    let (sheath, apart_in_sheath) = emitter.sheath_columns(spacing);
+    let half = 0.5 * core as f64 * apart;
+    let row = |apart: f64| if apart == spacing { spacing } else { spacing * spacing / apart };
+    let in_core = (0..core).map(|index| {
+        let offset = (index as f64 + 0.5) * apart - half;
+        Column {
+            offset,
+            row: row(apart),
+            speed: emitter.speed * emitter.profile.factor(offset / half),
+            temperature: real(emitter.temperature),
+            core: true,
         }
+    });
+    let outside = |side: f64, index: usize| Column {
+        offset: side * (half + (index as f64 + 0.5) * apart_in_sheath),
+        row: row(apart_in_sheath),
+        speed: emitter.sheath.as_ref().and_then(|sheath| sheath.speed).unwrap_or(emitter.speed),
+        temperature: real(emitter.sheath.as_ref().map_or(0.0, |sheath| sheath.temperature)),
+        core: false,
     };
-    (0..count).map(column).collect()
+    let left = (0..sheath).rev().map(|index| outside(-1.0, index));
+    let right = (0..sheath).map(|index| outside(1.0, index));
+    left.chain(in_core).chain(right).collect()
 }
 
 impl Profile {

@@ -17,6 +17,7 @@ pub const ALL: &[Case] = &[
     pool::COLUMN,
     layers::TWO_LAYERS,
     drop::ELLIPTICAL_DROP,
+    drop::OSCILLATING_DROP,
     wave::STANDING_WAVE,
     pool::DAM_BREAK,
     flow::TAYLOR_GREEN,

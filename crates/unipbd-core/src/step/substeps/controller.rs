@@ -8,9 +8,12 @@ use crate::scene::{Scene, SubstepLaw, Substeps};
 const KEPT: f64 = 0.75;
 /// Growth per frame of a reduced stiffness.
 const STIFFENING: f64 = 1.02;
+/// Most energy that this growth may release in a frame, over that of the liquids: water squeezed by a heavy body would
+/// else throw it higher than it fell.
+const RELEASED: f64 = 1e-3;
 
 /// Input of the controller: a function of the state at the start of a frame alone.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Demand {
     /// Fastest particle or emitter [m/s].
     pub speed: f64,
@@ -20,6 +23,14 @@ pub struct Demand {
     pub body_motion: f64,
     /// Substeps that rigid bodies need by the height of stacks and their mass ratios.
     pub support: f64,
+    /// Energy of the liquids over that which their compression stores.
+    pub over_stored: f64,
+}
+
+impl Default for Demand {
+    fn default() -> Self {
+        Demand { speed: 0.0, pressure: 0.0, body_motion: 0.0, support: 0.0, over_stored: f64::INFINITY }
+    }
 }
 
 /// Chooses the number of substeps per frame.
@@ -84,7 +95,8 @@ impl SubstepRule {
     ///
     /// Stiffness is proportional to 1/dt^2. If it jumped with the number of substeps, a compressed liquid would release
     /// more than its stored energy, up to 4 % of the energy of a drop that is drawn out; so it keeps its value and
-    /// grows frame by frame. The target compression is still met.
+    /// grows frame by frame. The target compression is still met, unless most of the energy is stored: then it grows by
+    /// what adds little energy, and a compression above the target is warned of.
     pub fn stiffness_after(&self, last: u32, before: f64, frame: f64, demand: Demand, substeps: u32) -> f64 {
         if self.is_fixed() || last == 0 || !self.law.stores_energy() {
             return 1.0;
@@ -92,7 +104,20 @@ impl SubstepRule {
         let square = |part: f64| part * part;
         let [_, _, compression, _] = self.law.wanted(frame, demand.speed, demand.pressure);
         let least = square(compression / f64::from(substeps));
-        (before * STIFFENING * square(f64::from(last) / f64::from(substeps))).max(least).min(1.0)
+        let kept = before * square(f64::from(last) / f64::from(substeps));
+        let most = kept * (1.0 + RELEASED * demand.over_stored);
+        (kept * STIFFENING).max(least).min(most).min(1.0)
+    }
+
+    /// Compression at which a start counts as one at rest: half of the target for liquids with a surface. Fluids that
+    /// fill their domain have none: they settle as long as they move.
+    pub fn rest_error(&self) -> f64 {
+        self.law.rest_error()
+    }
+
+    /// Whether particles alone hold gas in a closed tank.
+    pub fn confines_gas(&self) -> bool {
+        self.law.confines_gas
     }
 
     /// Largest pressure over density that surface tension may bring about [m^2/s^2].

@@ -61,8 +61,25 @@ impl World {
         // Pressure from the relative motion within the liquids.
         let dynamic = self.square_of_relative_speed(liquids, is_liquid);
         let known = if self.clock.step == 0 { 0.0 } else { liquids.pressure(self.clock.dt) };
-        let pressure = self.depth_pressure(liquids).max(dynamic).max(known / UNEXPECTED);
-        Demand { speed: moving.max(emitted), body_motion: bodies.motion, support: bodies.support, pressure }
+        let of_depth = self.depth_pressure(liquids);
+        let pressure = of_depth.max(self.buoyancy_pressure()).max(dynamic).max(known / UNEXPECTED);
+        Demand {
+            speed: moving.max(emitted),
+            body_motion: bodies.motion,
+            support: bodies.support,
+            pressure,
+            over_stored: self.energy_over_stored(liquids, of_depth),
+        }
+    }
+
+    /// Energy of motion, and of the height of liquids whose depth brings about this pressure over density [m^2/s^2], over
+    /// the energy that their compression stores.
+    fn energy_over_stored(&self, liquids: FluidStatistics, of_depth: f64) -> f64 {
+        if self.clock.step == 0 {
+            return f64::INFINITY;
+        }
+        let [motion, stored] = liquids.energies(self.clock.dt);
+        if stored > 0.0 { (motion + 0.5 * of_depth) / stored } else { f64::INFINITY }
     }
 
     pub(in crate::step) fn fastest(&self) -> f64 {
@@ -123,6 +140,32 @@ impl World {
         if gravity > 0.0 && depth.is_finite() { gravity * depth * self.density_ratio() } else { 0.0 }
     }
 
+    /// Pressure over density by which gas in a closed tank presses on its lid or floor, from its mean buoyancy or weight
+    /// and its height [m^2/s^2].
+    fn buoyancy_pressure(&self) -> f64 {
+        if !self.parts.substeps.confines_gas() {
+            return 0.0;
+        }
+        let (particles, forces) = (&self.parts.particles, &self.parts.forces);
+        let add = |[count, x, y]: [f64; 3], row: usize| {
+            if particles.phase[row] != Phase::Gas {
+                return [count, x, y];
+            }
+            let force = &forces[usize::from(particles.material[row])];
+            let factor = if force.thermal { particles.temperature[row] } else { 1.0 };
+            let pull = wide(force.acceleration * factor);
+            [count + 1.0, x + pull.x, y + pull.y]
+        };
+        let [count, x, y] = self.parts.parallelism.reduce(
+            particles.dense(),
+            |rows| rows.fold([0.0; 3], add),
+            |a, b| std::array::from_fn(|k| a[k] + b[k]),
+        );
+        let pull = Vector64::new(x, y) / count.max(1.0);
+        let height = self.survey(vector(pull.normalize_or_zero()), |phase| phase == Phase::Gas).depth();
+        if height.is_finite() { pull.length() * height } else { 0.0 }
+    }
+
     /// The same with hooks: what they have in common presses along the whole depth, the rest from all sides.
     fn pushed_pressure(&self, of: FluidStatistics) -> f64 {
         let half = 0.5 * self.extent().into_iter().fold(0.0, f64::max);
@@ -145,8 +188,18 @@ impl World {
     fn pressure_limit_of(&self, fluids: FluidStatistics) -> f64 {
         let least = LEAST_SPEED * self.parts.spacing / self.parts.frame_time;
         let tension = self.parts.substeps.tension_pressure();
-        let expected = self.depth_pressure(fluids) + 0.5 * fluids.square_of_speed() + tension;
+        let expected = self.depth_pressure(fluids) + 0.5 * fluids.square_of_speed() + tension + self.body_pressure();
         PRESSURE_MARGIN * expected + least * least
+    }
+
+    /// Largest pressure of bodies over the density of the lightest liquid that carries them, where particles alone do
+    /// [m^2/s^2].
+    fn body_pressure(&self) -> f64 {
+        let parts = &self.parts;
+        let Some(rigid) = parts.rigid.as_ref().filter(|_| parts.pressure_grid.is_none()) else { return 0.0 };
+        let liquids = parts.materials.iter().filter(|material| material.phase == Phase::Liquid);
+        let lightest = liquids.map(|liquid| liquid.density).fold(f64::INFINITY, f64::min);
+        if lightest.is_finite() { rigid.pressure(f64::from(parts.gravity.length())) / lightest } else { 0.0 }
     }
 
     /// Density of the heaviest liquid in the scene over that of the lightest: a light liquid carries a heavy one.

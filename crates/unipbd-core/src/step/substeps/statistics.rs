@@ -13,6 +13,10 @@ pub(in crate::step) struct FluidStatistics {
     velocity: Vector64,
     /// Sum of the fourth powers of the speeds [m^4/s^4].
     fourth: f64,
+    /// Sum of the squares of the speeds [m^2/s^2].
+    square: f64,
+    /// Sum of the energies over mass that compression stores, times the square of the substep [m^2].
+    stored: f64,
     /// Sum of the squares of the pressures over density, times the fourth power of the substep [m^4].
     pressure: f64,
     /// Largest coordinate along a direction and largest against it [m]; not finite without particles.
@@ -24,6 +28,8 @@ impl FluidStatistics {
         count: 0.0,
         velocity: Vector64::ZERO,
         fourth: 0.0,
+        square: 0.0,
+        stored: 0.0,
         pressure: 0.0,
         reach: [Real::NEG_INFINITY; 2],
     };
@@ -33,6 +39,8 @@ impl FluidStatistics {
             count: self.count + other.count,
             velocity: self.velocity + other.velocity,
             fourth: self.fourth + other.fourth,
+            square: self.square + other.square,
+            stored: self.stored + other.stored,
             pressure: self.pressure + other.pressure,
             reach: [larger(self.reach[0], other.reach[0]), larger(self.reach[1], other.reach[1])],
         }
@@ -58,6 +66,11 @@ impl FluidStatistics {
         (3.0 * self.mean(self.pressure)).sqrt() / (dt * dt)
     }
 
+    /// Energies over mass of motion and, after a substep of this length [s], of compression [m^2/s^2].
+    pub fn energies(self, dt: f64) -> [f64; 2] {
+        [0.5 * self.mean(self.square), self.mean(self.stored) / (dt * dt)]
+    }
+
     /// How far the particles extend along the direction [m]; not finite without particles.
     pub fn depth(self) -> f64 {
         f64::from(self.reach[0]) + f64::from(self.reach[1])
@@ -75,11 +88,14 @@ impl World {
             let velocity = particles.velocity[row];
             let square = f64::from(velocity.length_squared());
             let pressure = f64::from(particles.multiplier[row] * particles.inverse_mass[row]);
+            let compression = f64::from(larger(particles.density_error[row], 0.0));
             let place = particles.position[row].dot(down);
             FluidStatistics {
                 count: sum.count + 1.0,
                 velocity: sum.velocity + wide(velocity),
                 fourth: sum.fourth + square * square,
+                square: sum.square + square,
+                stored: sum.stored + 0.5 * pressure * compression,
                 pressure: sum.pressure + pressure * pressure,
                 reach: [larger(sum.reach[0], place), larger(sum.reach[1], -place)],
             }

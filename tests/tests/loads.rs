@@ -1,0 +1,93 @@
+//! Loads that the particles alone must carry: heavy bodies on water, hot gas below a lid. The pressure grid is off.
+
+use unipbd_core::Solver;
+use unipbd_core::scene::Scene;
+use unipbd_tests::{bars, build, run, scene};
+
+/// Water below a locked block as wide as its tank, without the pressure grid.
+fn piston(depth: f64, bottom: f64, mass: f64) -> Scene {
+    scene(&format!(
+        r#"
+        spacing = 0.05
+        [solver]
+        pressure_grid = "off"
+        [[liquid]]
+        name = "water"
+        [[block]]
+        material = "water"
+        min = [0.0, 0.0]
+        max = [0.8, {depth}]
+        [[tank]]
+        min = [0.0, 0.0]
+        max = [0.8, 6.0]
+        [[body]]
+        size = [0.8, 0.2]
+        position = [0.4, {}]
+        mass = {mass}
+        friction = 0.0
+        rotation = "locked"
+        "#,
+        bottom + 0.1
+    ))
+}
+
+/// Largest energy gained in 2 s over that of the start, and whether there was a warning of the density.
+fn gained(solver: &mut Solver) -> (f64, bool) {
+    let start = solver.diagnostics().energy();
+    let mut most = 0.0_f64;
+    run(solver, 120, |solver| most = most.max(solver.diagnostics().energy() / start - 1.0));
+    (most, solver.take_events().iter().any(|event| event.message.contains("density")))
+}
+
+#[test]
+fn squeezed_water_throws_no_body_higher_than_it_fell() {
+    // The target cannot be held: the stiffness stays what it is, and the run says so.
+    for (mass, most) in [(320.0, 0.005), (1600.0, 0.02), (6400.0, 0.2)] {
+        let (gain, warned) = gained(&mut build(&piston(0.4, 0.7, mass), 1));
+        bars("block dropped 0.3 m on water in a shaft, no grid", |bars| {
+            bars.at_most(&format!("energy gained, {mass} kg"), gain, most);
+        });
+        assert!(warned || mass < 1000.0, "{mass} kg: a compression above its band is warned of");
+    }
+}
+
+#[test]
+fn water_that_falls_as_a_slab_does_not_rebound_to_where_it_was() {
+    let mut slab = piston(0.4, 1.0, 1.0);
+    slab.body.clear();
+    (slab.block[0].min, slab.block[0].max) = ([0.0, 0.5], [0.8, 0.9]);
+    let (gain, _) = gained(&mut build(&slab, 1));
+    bars("slab of water falls 0.5 m, no grid", |bars| bars.at_most("energy gained", gain, 0.005));
+}
+
+#[test]
+fn hot_gas_rests_below_a_lid() {
+    let hot = scene(
+        r#"
+        spacing = 0.05
+        [solver]
+        pressure_grid = "off"
+        [[gas]]
+        name = "air"
+        gravity_factor = 0.5
+        [[block]]
+        material = "air"
+        min = [0.0, 0.0]
+        max = [1.0, 1.0]
+        temperature = 1.0
+        [[tank]]
+        min = [0.0, 0.0]
+        max = [1.0, 1.0]
+        "#,
+    );
+    let mut solver = build(&hot, 1);
+    let (mut speed, mut compression) = (0.0_f64, 0.0_f64);
+    run(&mut solver, 180, |solver| {
+        speed = speed.max(solver.diagnostics().speed_max);
+        compression = compression.max(solver.diagnostics().density_error_mean);
+    });
+    bars("uniformly hot gas in a closed box, no grid, 3 s", |bars| {
+        bars.at_most("largest speed [dx/s]", speed / 0.05, 20.0);
+        bars.at_most("largest mean C", compression, 0.02);
+    });
+}
