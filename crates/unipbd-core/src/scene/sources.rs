@@ -59,8 +59,10 @@ pub struct Emitter {
     /// Direction of the flow; need not have length 1.
     #[serde(default = "up")]
     pub direction: [f64; 2],
-    /// Width of the face without the sheath [m]. The columns of particles are a whole number; they move apart or
-    /// together, and their rows the other way, so that the flow is that of the width.
+    /// Width of the face without the sheath [m].
+    ///
+    /// The columns of particles are a whole number; they move apart or together, and their rows the other way, so that
+    /// the flow is that of the width.
     pub width: f64,
     /// Speed at the face [m/s].
     pub speed: f64,

@@ -193,12 +193,12 @@ impl Contact {
         for k in 0..3 {
             (block.response[k][lane], block.inverse[k][lane]) = (response[k] as Real, inverse[k] as Real);
         }
-        for k in 0..2 {
+        for (k, alone) in alone.into_iter().enumerate() {
             let point = self.points().get(k).copied().unwrap_or_else(super::contact_cache::Point::absent);
             block.gap[k][lane] = point.gap.min(FAR) as Real;
             (block.normal_a[k][lane], block.normal_b[k][lane]) = (point.normal_a as Real, point.normal_b as Real);
             (block.tangent_a[k][lane], block.tangent_b[k][lane]) = (point.tangent_a as Real, point.tangent_b as Real);
-            (block.alone[k][lane], block.tangent[k][lane]) = (alone[k] as Real, mass.tangent[k] as Real);
+            (block.alone[k][lane], block.tangent[k][lane]) = (alone as Real, mass.tangent[k] as Real);
             block.normal_impulse[k][lane] = point.normal_impulse;
             block.tangent_impulse[k][lane] = point.tangent_impulse;
         }

@@ -70,7 +70,10 @@ impl Broad {
         let corner = |at: Vector64| [column(at.x * per_metre), column(at.y * per_metre)];
         self.corners.extend(fat.iter().map(|bounds| [corner(bounds.low), corner(bounds.high)]));
         self.large.clear();
-        let is_large = |bounds: &Bounds| !((bounds.high - bounds.low).max_element() <= 4.0 * cell);
+        let is_large = |bounds: &Bounds| {
+            let extent = (bounds.high - bounds.low).max_element();
+            extent > 4.0 * cell || extent.is_nan() || cell.is_nan()
+        };
         self.large.extend((0..fat.len() as u32).filter(|&k| is_large(&fat[k as usize])));
         let buckets = (2 * fat.len()).next_power_of_two().max(2);
         self.starts.clear();

@@ -3,6 +3,7 @@
 use super::checker::{Allowed, Checker, entries, number};
 use super::motion;
 use super::names::check_unique;
+use super::placement::SEVERAL_TANKS;
 use super::size::MOST_CORNERS;
 use crate::scene::{BodyDescription, BodyKind, BodySolver, KeyPath, MOST_BODIES, RotationRule, Side, Tank};
 
@@ -184,17 +185,21 @@ fn check_copies(checker: &mut Checker, path: &KeyPath, body: &BodyDescription, t
     sound
 }
 
-/// Dynamic bodies start inside a tank, where there are tanks.
+/// Dynamic bodies start inside every tank.
 fn check_place(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {
-    let tanks = &checker.scene.tank;
-    if body.kind != BodyKind::Dynamic || tanks.is_empty() {
+    if body.kind != BodyKind::Dynamic {
         return;
     }
-    let outside = |place: &[f64; 2]| !tanks.iter().any(|tank| holds(tank, *place));
-    if let Some([x, y]) = body.places().map(<[f64; 2]>::from).find(outside) {
+    let several = checker.scene.tank.len() > 1;
+    let outside = |[x, y]: [f64; 2]| {
+        let tank = checker.scene.tank.iter().position(|tank| !holds(tank, [x, y]))?;
+        Some((tank, x, y))
+    };
+    if let Some((tank, x, y)) = body.places().map(<[f64; 2]>::from).find_map(outside) {
         let which = if body.copies.is_some() { "a copy of the body" } else { "the body" };
-        let message = format!("{which} starts outside every tank, at [{}, {}]", number(x), number(y));
-        checker.problem(path.then("position"), message, "move it inside, or open that side of the tank");
+        let message = format!("{which} starts outside tank[{tank}], at [{}, {}]", number(x), number(y));
+        let hint = if several { SEVERAL_TANKS } else { "move it inside, or open that side of the tank" };
+        checker.problem(path.then("position"), message, hint);
     }
 }
 

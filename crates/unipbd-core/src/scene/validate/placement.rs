@@ -69,6 +69,10 @@ fn side_level(outward: [f64; 2], min: [f64; 2], max: [f64; 2]) -> f64 {
     if outward[axis] > 0.0 { max[axis] } else { -min[axis] }
 }
 
+/// What to do where a tank keeps something out that lies in another one.
+pub(super) const SEVERAL_TANKS: &str =
+    "the walls of every tank hold all particles and bodies: for two basins put an [[obstacle]] into one tank";
+
 /// The walled side through which a shape reaches farthest, how far, and whether all of it is beyond.
 fn escape(tank: &Tank, shape: &Shape) -> (f64, &'static str, bool) {
     let closed = SIDES.iter().filter(|(side, ..)| !tank.open.contains(side));
@@ -80,11 +84,11 @@ fn escape(tank: &Tank, shape: &Shape) -> (f64, &'static str, bool) {
     depths.fold((f64::NEG_INFINITY, "", false), |worst, next| if next.0 > worst.0 { next } else { worst })
 }
 
-/// A source must fit into one tank, where there are any.
+/// A source must fit into every tank: the walls of all tanks hold all particles.
 fn outside_tanks(checker: &Checker, source: &Source, slack: f64) -> Finding {
     let tanks = checker.scene.tank.iter().enumerate();
     let escapes = tanks.map(|(index, tank)| (index, escape(tank, &source.shape)));
-    let (index, (depth, side, beyond)) = escapes.min_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
+    let (index, (depth, side, beyond)) = escapes.max_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
     if !(depth.is_finite() && depth > slack) {
         return None;
     }
@@ -93,7 +97,11 @@ fn outside_tanks(checker: &Checker, source: &Source, slack: f64) -> Finding {
     } else {
         format!("{} reaches {} m through the {side} side of tank[{index}]", subject(source), rounded(depth))
     };
-    Some((message, format!("move it inside the tank, or open that side: open = [\"{side}\"]")))
+    let hint = match checker.scene.tank.len() {
+        1 => format!("move it inside the tank, or open that side: open = [\"{side}\"]"),
+        _ => SEVERAL_TANKS.to_owned(),
+    };
+    Some((message, hint))
 }
 
 fn in_obstacle(checker: &Checker, source: &Source, slack: f64) -> Finding {
