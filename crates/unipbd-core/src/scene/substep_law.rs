@@ -60,11 +60,6 @@ impl SubstepLaw {
         self.alone && self.free
     }
 
-    /// Compression at which a start counts as one at rest.
-    pub fn rest_error(&self) -> f64 {
-        if self.free { 0.5 * self.target } else { -1.0 }
-    }
-
     /// Largest pressure over density that surface tension may bring about [m^2/s^2].
     pub fn tension_pressure(&self) -> f64 {
         self.tension.pressure

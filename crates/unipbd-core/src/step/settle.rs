@@ -11,8 +11,8 @@ use crate::parallel::Parallelism;
 use crate::particles::{Particles, displaced};
 use crate::phase::Phase;
 
-/// Settling ends when no particle moves farther than this many spacings in one projection, or where no liquid is
-/// compressed by more than a part of the target.
+/// Settling ends when no particle moves farther than this many spacings in one projection. (Ended at half of the target
+/// compression, in a third of the time, it leaves ramps 1 % too fast and a submerged star 1.3 % too light.)
 const SETTLED: f64 = 1e-5;
 /// Projections that settle a shallow start (measured on columns of 10 to 30 layers).
 const PROJECTIONS: f64 = 100.0;
@@ -35,25 +35,12 @@ impl World {
         (self.clock.stiffness, self.clock.settling) = (1.0, true);
         if self.parts.particles.dense() > 0 {
             let still = SETTLED * self.parts.spacing;
-            let close = self.parts.substeps.rest_error();
-            (0..projections).find(|_| {
-                let way = self.relax_once();
-                way <= still || self.worst_compression().is_some_and(|worst| worst <= close)
-            });
+            (0..projections).find(|_| self.relax_once() <= still);
             zero_displacements(&mut self.parts.particles);
         }
         // The start can be observed like any other moment.
         self.find_neighbors_if_listed();
         self.clock = Clock { generation: self.clock.generation, ..Clock::default() };
-    }
-
-    /// Largest density error before the last projection, where nothing but density has to settle.
-    fn worst_compression(&self) -> Option<f64> {
-        let parts = &self.parts;
-        let soft = parts.rigid.as_ref().is_some_and(|rigid| rigid.any_matched());
-        let (density, others): (Vec<_>, Vec<_>) = parts.groups.iter().partition(|group| group.as_density().is_some());
-        let alone = !soft && others.iter().all(|group| group.violation().is_none());
-        density.first().filter(|_| alone).and_then(|group| group.violation())
     }
 
     fn projections_to_settle(&self) -> u32 {

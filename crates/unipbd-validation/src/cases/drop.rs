@@ -102,7 +102,7 @@ fn oscillating(trial: &Trial) -> Result<Measured, Failure> {
         .map(|pair| pair[0].0 + (pair[1].0 - pair[0].0) * pair[0].1 / (pair[0].1 - pair[1].1))
         .collect();
     let period =
-        (falls.last().unwrap_or(&f64::NAN) - falls.first().unwrap_or(&f64::NAN)) / (falls.len() - 1).max(1) as f64;
+        (falls.last().unwrap_or(&f64::NAN) - falls.first().unwrap_or(&f64::NAN)) / falls.len().saturating_sub(1) as f64;
     // The energy sways within a period: means over the first and the last one.
     let one = ((100.0 * exact) as usize).min(energies.len());
     let mean = |energies: &[f64]| energies.iter().sum::<f64>() / energies.len() as f64;

@@ -109,12 +109,6 @@ impl SubstepRule {
         (kept * STIFFENING).max(least).min(most).min(1.0)
     }
 
-    /// Compression at which a start counts as one at rest: half of the target for liquids with a surface. Fluids that
-    /// fill their domain have none: they settle as long as they move.
-    pub fn rest_error(&self) -> f64 {
-        self.law.rest_error()
-    }
-
     /// Whether particles alone hold gas in a closed tank.
     pub fn confines_gas(&self) -> bool {
         self.law.confines_gas
