@@ -7,7 +7,7 @@ use unipbd_core::scene::Expect;
 use crate::support::scenes;
 
 /// Scenes that cost less than this on one core [s] are run by every test run.
-const QUICK: f64 = 4.0;
+const QUICK: f64 = 2.0;
 
 #[test]
 fn every_scene_says_what_it_shows_and_what_to_expect() {
