@@ -17,8 +17,8 @@ fn walls_that_are_there_twice_are_refused() {
 }
 
 #[test]
-fn walls_beside_each_other_are_not() {
-    assert_eq!(problems(|scene| scene.tank.push(Tank::new([3.0, 0.0], [5.0, 2.0]))), [""; 0]);
+fn tanks_hold_all_particles() {
+    is_refused("block[0]", "lies outside tank[1]", |scene| scene.tank.push(Tank::new([3.0, 0.0], [5.0, 2.0])));
     assert_eq!(problems(|scene| scene.tank.push(Tank::new([0.0, 0.0], [2.0, 2.1]))), [""; 0]);
 }
 
