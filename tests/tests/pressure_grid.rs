@@ -78,36 +78,6 @@ fn layers_of_any_ratio_rest_on_one_or_two_substeps() {
 }
 
 #[test]
-fn hot_gas_in_a_closed_box_rests() {
-    let scene = scene(
-        r#"
-        spacing = 0.05
-        [[gas]]
-        name = "air"
-        gravity_factor = 0.5
-        [[block]]
-        material = "air"
-        min = [0.0, 0.0]
-        max = [1.0, 1.0]
-        temperature = 1.0
-        [[tank]]
-        min = [0.0, 0.0]
-        max = [1.0, 1.0]
-        "#,
-    );
-    let mut solver = build(&scene, 1);
-    let (mut speed, mut compression) = (0.0_f64, 0.0_f64);
-    run(&mut solver, 180, |solver| {
-        speed = speed.max(solver.diagnostics().speed_max);
-        compression = compression.max(solver.diagnostics().density_error_max);
-    });
-    bars("uniformly hot gas in a closed box, 3 s", |bars| {
-        bars.at_most("largest speed [dx/s]", speed / 0.05, 1.0);
-        bars.at_most("worst C", compression, 0.01);
-    });
-}
-
-#[test]
 fn a_full_closed_tank_presses_on_its_floor_alone() {
     let scene = water(2.0, 1.0, 0.05, "[[tank]]\nname = \"t\"\nmin = [0.0, 0.0]\nmax = [2.0, 1.0]");
     let mut solver = build(&scene, 1);

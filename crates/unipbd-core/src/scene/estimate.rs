@@ -72,8 +72,7 @@ fn rates(emitter: &Emitter, spacing: f64) -> (f64, f64) {
     // The mean of 1 - s^2/2 over the face is 5/6.
     let mean = if emitter.profile == Profile::Parabolic { 5.0 / 6.0 } else { 1.0 };
     let core = rate(emitter.columns(spacing), emitter.speed * mean);
-    let of_sheath = emitter.sheath.as_ref().map_or(0.0, |sheath| sheath.speed.unwrap_or(emitter.speed));
-    let sheath = 2.0 * rate(emitter.sheath_columns(spacing), of_sheath);
+    let sheath = 2.0 * rate(emitter.sheath_columns(spacing), emitter.sheath_speed());
     let markers = emitter.smoke.as_ref().map_or(0.0, |smoke| core * f64::from(smoke.per_particle));
     (core + sheath, markers)
 }

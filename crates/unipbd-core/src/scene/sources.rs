@@ -165,6 +165,11 @@ impl Emitter {
             _ => (0, spacing),
         }
     }
+
+    /// Speed of the sheath [m/s]: its own, or that of the core.
+    pub(crate) fn sheath_speed(&self) -> f64 {
+        self.sheath.as_ref().and_then(|sheath| sheath.speed).unwrap_or(self.speed)
+    }
 }
 
 /// Columns closer than half a spacing would stand a row apart that no neighbour reaches.

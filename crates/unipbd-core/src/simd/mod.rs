@@ -96,7 +96,7 @@ impl Level {
         match self {
             Level::Scalar => true,
             Level::Portable => cfg!(not(feature = "f64")),
-            // A module is checked as a whole before it runs: what it was built with is there.
+            // A module is checked as a whole before it runs: the instructions it was built with are there.
             Level::Simd128 => {
                 cfg!(all(target_arch = "wasm32", target_feature = "simd128", not(feature = "f64")))
             }

@@ -363,7 +363,7 @@ fn columns(emitter: &Emitter, spacing: f64) -> Vec<Column> {
     let outside = |side: f64, index: usize| Column {
         offset: side * (half + (index as f64 + 0.5) * apart_in_sheath),
         row: row(apart_in_sheath),
-        speed: emitter.sheath.as_ref().and_then(|sheath| sheath.speed).unwrap_or(emitter.speed),
+        speed: emitter.sheath_speed(),
         temperature: real(emitter.sheath.as_ref().map_or(0.0, |sheath| sheath.temperature)),
         core: false,
     };

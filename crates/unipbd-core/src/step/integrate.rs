@@ -29,6 +29,11 @@ impl BodyForce {
     pub fn new(gravity: Vector64, factor: f64, thermal: bool) -> BodyForce {
         BodyForce { acceleration: vector(gravity * factor), factor, thermal }
     }
+
+    /// Factor on it at a row: the temperature, or 1.
+    pub(in crate::step) fn factor_at(&self, row: usize, temperatures: &[Real]) -> Real {
+        if self.thermal { temperatures[row] } else { 1.0 }
+    }
 }
 
 /// u = dt v + dt^2 a, x = x_n + u, for every row that has inertia; kinematic rows keep their velocity.
@@ -39,8 +44,7 @@ pub(super) fn predict(particles: &mut Particles, forces: &[BodyForce], dt: Real,
     let remainder = &particles.remainder;
     let pull = |row: usize| {
         let force = &forces[usize::from(material[row])];
-        let factor = if force.thermal { temperature[row] } else { 1.0 };
-        let pull = force.acceleration * (factor * dt);
+        let pull = force.acceleration * (force.factor_at(row, temperature) * dt);
         match acceleration.get(row) {
             Some(&acceleration) => pull + acceleration * dt,
             None => pull,

@@ -51,7 +51,7 @@ impl Coupling {
     }
 }
 
-/// The mass of a response; 0 for what nothing moves.
+/// The mass of a response; 0 for a body that nothing moves.
 pub(super) fn inverse(response: f64) -> f64 {
     if response > 0.0 { 1.0 / response } else { 0.0 }
 }

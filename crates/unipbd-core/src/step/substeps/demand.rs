@@ -152,8 +152,7 @@ impl World {
                 return [count, x, y];
             }
             let force = &forces[usize::from(particles.material[row])];
-            let factor = if force.thermal { particles.temperature[row] } else { 1.0 };
-            let pull = wide(force.acceleration * factor);
+            let pull = wide(force.acceleration * force.factor_at(row, &particles.temperature));
             [count + 1.0, x + pull.x, y + pull.y]
         };
         let [count, x, y] = self.parts.parallelism.reduce(
