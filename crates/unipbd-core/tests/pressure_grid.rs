@@ -1,7 +1,10 @@
 //! The pressure grid: fluids with the substeps of their speed alone.
 
-use unipbd_core::scene::{Block, Disc, Domain, Liquid, Obstacle, PressureGridUse, Scene, SolverSettings, Tank};
-use unipbd_core::{BuildOptions, Solver};
+use unipbd_core::scene::{
+    Block, BodyDescription, Disc, Domain, HalfPlane, Liquid, LiquidSurface, Obstacle, PressureGridUse, Scene,
+    SolverSettings, Tank,
+};
+use unipbd_core::{BuildOptions, Edit, Solver, Vector64};
 
 const GRAVITY: f64 = 9.81;
 
@@ -117,12 +120,109 @@ fn the_bits_do_not_depend_on_threads_or_on_a_pause() {
     assert_eq!(one.diagnostics(), other.diagnostics());
 }
 
+/// Two drops that meet in a domain without end, at this place [m].
+fn meeting_drops(at: [f64; 2]) -> Scene {
+    let drop = |x: f64, velocity: [f64; 2]| Disc {
+        material: "water".into(),
+        center: [at[0] + x, at[1] + 0.25 * x],
+        radius: 1.0,
+        velocity,
+        jitter: 0.0,
+        temperature: 0.0,
+    };
+    Scene {
+        spacing: 0.125,
+        gravity: [0.0; 2],
+        solver: grid(),
+        domain: Domain { periodic_x: Some([0.0, 8.0]), periodic_y: Some([0.0, 8.0]), ..Domain::default() },
+        liquid: vec![Liquid::new("water", 1000.0)],
+        disc: vec![drop(-1.5, [3.0, 1.0]), drop(1.5, [-3.0, 0.0])],
+        ..Scene::default()
+    }
+}
+
+#[test]
+fn drops_meet_across_borders_as_they_meet_elsewhere() {
+    let [middle, corner] = [[4.0, 4.0], [8.0, 8.0]].map(|at| {
+        let mut solver = build(&meeting_drops(at), 1);
+        let start = solver.diagnostics();
+        run(&mut solver, 60, |_| ());
+        let end = solver.diagnostics();
+        let momentum = (end.momentum - start.momentum).length() / (start.kinetic_energy * 2.0 * 1000.0).sqrt();
+        (end.kinetic_energy / start.kinetic_energy, momentum, end.density_error_mean)
+    });
+    eprintln!("energy {:.4}, {:.4}, momentum {:.1e}, {:.1e}", middle.0, corner.0, middle.1, corner.1);
+    assert!((middle.0 - corner.0).abs() < 0.01 && middle.0 < 0.9, "the drops meet: {} {}", middle.0, corner.0);
+    assert!((middle.2 - corner.2).abs() < 2e-3, "{} {}", middle.2, corner.2);
+    assert!(middle.1 < 1e-4 && corner.1 < 1e-4, "{:e} {:e}", middle.1, corner.1);
+}
+
+#[test]
+fn a_column_that_repeats_stands_on_one_substep() {
+    let scene = Scene {
+        domain: Domain { periodic_x: Some([0.0, 3.2]), ..Domain::default() },
+        half_plane: vec![HalfPlane { name: "floor".into(), ..HalfPlane::new([0.0, 0.0], [0.0, 1.0]) }],
+        tank: Vec::new(),
+        ..pool([3.2, 10.0], 3.2)
+    };
+    let mut solver = build(&scene, 1);
+    run(&mut solver, 200, |_| ());
+    let (mut floor, mut worst) = (0.0, 0.0_f64);
+    run(&mut solver, 30, |solver| {
+        assert_eq!(solver.diagnostics().substeps, 1);
+        worst = worst.max(solver.diagnostics().density_error_max);
+        floor -= solver.wall_forces()[0].force.y / 30.0;
+    });
+    let weight = 1000.0 * 3.2 * 10.0 * GRAVITY;
+    eprintln!("floor {:.4}, C {worst:.4}", floor / weight);
+    assert!((floor / weight - 1.0).abs() < 0.01, "{}", floor / weight);
+    assert!(worst < 0.02, "{worst}");
+}
+
+#[test]
+fn a_flow_without_walls_keeps_its_momentum_and_its_vortices() {
+    let (spacing, period) = (0.02, 1.0);
+    let scene = Scene {
+        spacing,
+        gravity: [0.0; 2],
+        fps: 100.0,
+        solver: grid(),
+        domain: Domain { periodic_x: Some([0.0, period]), periodic_y: Some([0.0, period]), ..Domain::default() },
+        liquid: vec![Liquid { surface: LiquidSurface::None, ..Liquid::new("fluid", 1.0) }],
+        block: vec![Block { jitter: 0.3, velocity: [0.25, 0.0], ..Block::new("fluid", [0.0; 2], [period; 2]) }],
+        ..Scene::default()
+    };
+    let mut solver = build(&scene, 2);
+    let wave = 2.0 * std::f64::consts::PI / period;
+    let places: Vec<Vector64> =
+        solver.positions().iter().map(|x| Vector64::new(f64::from(x.x), f64::from(x.y))).collect();
+    let flow = |x: Vector64| {
+        let (sx, cx) = (wave * x.x).sin_cos();
+        let (sy, cy) = (wave * x.y).sin_cos();
+        Vector64::new(0.25 + sx * cy, -cx * sy)
+    };
+    let set = Edit::new().set_velocities(solver.ids(), places.into_iter().map(flow).collect::<Vec<_>>());
+    solver.apply(&set).expect("all ids are there");
+    let start = solver.diagnostics();
+    run(&mut solver, 50, |_| ());
+    let end = solver.diagnostics();
+    let drift = (end.momentum - start.momentum).length();
+    eprintln!("momentum {drift:.1e}, energy {:.4}", end.kinetic_energy / start.kinetic_energy);
+    assert!(drift < 1e-5, "{drift:e}");
+    assert!((0.9..=1.001).contains(&(end.kinetic_energy / start.kinetic_energy)));
+}
+
 #[test]
 fn what_it_does_not_support_is_refused_at_once() {
-    let domain = Domain { periodic_x: Some([0.0, 2.0]), ..Domain::default() };
-    let scene = Scene { domain, tank: Vec::new(), ..pool([1.0, 1.0], 2.0) };
-    let problems = scene.build(BuildOptions::default()).err().expect("it is not possible").to_string();
-    for word in ["pressure_grid", "periodic"] {
-        assert!(problems.contains(word), "{problems}");
+    let domain = Domain { periodic_x: Some([0.0, 4.0]), ..Domain::default() };
+    let with_body =
+        Scene { domain, tank: Vec::new(), body: vec![BodyDescription::disc(0.3, [3.0, 3.0])], ..pool([4.0, 1.0], 4.0) };
+    let domain = Domain { periodic_x: Some([0.0, 4.0]), periodic_y: Some([0.0, 3.33]), ..Domain::default() };
+    let odd = Scene { domain, tank: Vec::new(), gravity: [0.0; 2], ..pool([4.0, 1.0], 4.0) };
+    for scene in [with_body, odd] {
+        let problems = scene.build(BuildOptions::default()).err().expect("it is not possible").to_string();
+        for word in ["pressure_grid", "period"] {
+            assert!(problems.contains(word), "{problems}");
+        }
     }
 }

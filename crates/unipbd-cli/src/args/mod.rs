@@ -40,7 +40,7 @@ Exit codes:
 
 Environment:
   UNIPBD_THREADS  number of threads where --threads is not given
-  UNIPBD_SIMD     instruction set: scalar, portable, sse2, avx2, avx512 [default: the fastest]; never changes results
+  UNIPBD_SIMD     instruction set: scalar, sse2, avx2, avx512, portable (other processors) [default: the fastest]; never changes results
   NO_COLOR        no colours in messages
 
 Examples:

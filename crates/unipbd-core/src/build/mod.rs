@@ -143,7 +143,8 @@ fn pressure_grid(scene: &Scene) -> PressureGrid {
     // The light fluid feels the residual of the heavy one.
     let tolerance = scene.solver.pressure_tolerance * mixture.lightest().sqrt();
     let accuracy = Accuracy { tolerance, most: scene.solver.pressure_steps };
-    PressureGrid::new(real(scene.spacing), mixture, accuracy, 1.0 / scene.fps)
+    let periods = (scene.cells_of_periods().unwrap_or_default(), periodic(scene));
+    PressureGrid::new(real(scene.spacing), periods, (mixture, accuracy), 1.0 / scene.fps)
 }
 
 fn groups(

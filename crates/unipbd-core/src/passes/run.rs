@@ -7,6 +7,7 @@ use crate::neighbors::{Chunk, Entries};
 #[cfg(target_arch = "x86_64")]
 use crate::simd::avx512::Avx512;
 use crate::simd::lanes::{ColumnPair, Entry, Lanes, Turn, Two};
+#[cfg(any(miri, not(any(target_arch = "x86_64", all(target_arch = "wasm32", target_feature = "simd128")))))]
 use crate::simd::portable::Portable;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
 use crate::simd::wasm::Simd128;
@@ -42,8 +43,10 @@ pub(super) unsafe fn run<P: Pass<N>, const N: usize>(
         #[cfg(all(target_arch = "wasm32", target_feature = "simd128"))]
         // SAFETY: the build has these registers.
         Level::Simd128 => unsafe { run_chunk::<Two<Simd128>, P, N>(pass, chunk, rows, reach, sink) },
+        #[cfg(any(miri, not(any(target_arch = "x86_64", all(target_arch = "wasm32", target_feature = "simd128")))))]
         // SAFETY: plain arrays run anywhere.
-        _ => unsafe { run_chunk::<Two<Portable>, P, N>(pass, chunk, rows, reach, sink) },
+        Level::Portable => unsafe { run_chunk::<Two<Portable>, P, N>(pass, chunk, rows, reach, sink) },
+        _ => unreachable!("levels that do not run here are never chosen"),
     }
 }
 

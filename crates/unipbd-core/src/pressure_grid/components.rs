@@ -1,6 +1,7 @@
 //! Parts of the fluid that meet no air: their pressure is determined up to a constant.
 
 use super::couplings::Couplings;
+use super::images::Images;
 use super::spans::Spans;
 use crate::bytes::held;
 use crate::math::Real;
@@ -28,11 +29,24 @@ pub(super) struct Components {
 
 impl Components {
     /// Finds the closed parts of the fluid, from couplings that were summed.
-    pub fn find(&mut self, couplings: &Couplings, spans: &Spans, stride: usize) {
+    pub fn find(&mut self, couplings: &Couplings, spans: &Spans, (images, stride): (Images, usize)) {
         self.closed.clear();
         self.list_runs(couplings, spans);
         self.joined.reset(self.runs.len());
         self.join(&couplings.upper, stride);
+        let Components { runs, joined, .. } = self;
+        let run_of = |cell: usize| {
+            let number = runs.partition_point(|run| run.end as usize <= cell);
+            runs.get(number).filter(|run| run.start as usize <= cell).map(|_| number as u32)
+        };
+        images.borders(couplings.right.len(), stride, |axis, cell, other| {
+            let coupling = if axis == 0 { couplings.right[cell] } else { couplings.upper[cell] };
+            if coupling > 0.0
+                && let (Some(run), Some(across)) = (run_of(cell), run_of(other))
+            {
+                joined.unite(run, across);
+            }
+        });
         self.airy.clear();
         self.airy.resize(self.runs.len(), false);
         for (number, run) in self.runs.iter().enumerate() {
@@ -57,7 +71,8 @@ impl Components {
             for cell in cells.clone() {
                 if total[cell] > 0.0 {
                     let first = *start.get_or_insert(cell);
-                    if right[cell] == 0.0 || cell + 1 == cells.end {
+                    // The last cell before images is coupled with one of them.
+                    if right[cell] == 0.0 || cell + 1 == cells.end || total[cell + 1] == 0.0 {
                         self.runs.push(Run { start: first as u32, end: cell as u32 + 1 });
                         start = None;
                     }

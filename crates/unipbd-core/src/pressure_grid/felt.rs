@@ -5,7 +5,7 @@ use super::openings::Openings;
 use super::spans::Spans;
 use super::surface::ghost;
 use super::system::System;
-use super::transfer::interpolate;
+use super::transfer::{Fields, interpolate};
 use crate::math::{Quad, Real, Vector, larger, smaller};
 use crate::parallel::Parallelism;
 
@@ -40,13 +40,14 @@ impl System {
                 let [of_pressure, of_potential] = [pressure, potential].map(|field| field[k - back] - field[k]);
                 Some(Quad::new(gain * of_pressure, gain * of_potential, valid, 1.0))
             };
-            let inner = 2 * back..lattice.len() - back;
+            let images = lattice.images.periods[usize::from(back > 1)] > 0;
+            let inner = if images { back } else { 2 * back }..lattice.len() - back;
             // A wall face gets the value of the next face away from the wall.
             let felt = |k: usize| match inner.contains(&k) {
                 false => None,
                 true if of_walls[k] > 0.0 => difference(k),
                 true if depth[k] >= 0.0 => difference(k + back),
-                true if depth[k - back] >= 0.0 => difference(k - back),
+                true if depth[k - back] >= 0.0 && k >= 2 * back => difference(k - back),
                 true => None,
             };
             spans.each(faces, parallelism, |first, faces| {
@@ -54,6 +55,23 @@ impl System {
                     *face = felt(first + k).unwrap_or_default();
                 }
             });
+            lattice.images.copy(faces, lattice.stride());
+        }
+    }
+
+    /// Takes the mean out of the changes: without walls, the pressure changes no momentum, and does not move the centre of
+    /// mass.
+    pub fn keep_momentum(&mut self, lattice: &Lattice, fields: &Fields) {
+        for (faces, sums) in self.faces.iter_mut().zip([&fields.left, &fields.lower]) {
+            let (mut moved, mut mass) = ([0.0, 0.0], 0.0);
+            for (face, [_, weight]) in lattice.rows().flat_map(|cells| faces[cells.clone()].iter().zip(&sums[cells])) {
+                let weight = f64::from(*weight);
+                moved = [moved[0] + weight * f64::from(face.x), moved[1] + weight * f64::from(face.y)];
+                mass += weight;
+            }
+            let mean = moved.map(|sum| (sum / f64::max(mass, f64::MIN_POSITIVE)) as Real);
+            let mean = Quad::new(mean[0], mean[1], 0.0, 0.0);
+            faces.iter_mut().for_each(|face| *face -= mean * face.w);
         }
     }
 

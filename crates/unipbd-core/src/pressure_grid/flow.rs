@@ -1,6 +1,6 @@
 //! The flow between cells.
 
-use crate::math::{Real, Vector};
+use crate::math::Real;
 
 /// Velocities at the faces of cells.
 pub(super) struct Flow<'a> {
@@ -24,11 +24,11 @@ impl Flow<'_> {
     /// Minus the determinant of the velocity gradient, in cell units: the compression by curved paths. (The trace of the
     /// squared gradient is twice that where the flow has no divergence; but squares of noise add up.)
     pub fn squeeze(&self, cell: usize) -> Real {
-        let middle =
-            |cell: usize| Vector::new(self.u[cell] + self.u[cell + 1], self.v[cell] + self.v[cell + self.stride]) * 0.5;
-        let [left, right, lower, upper] = self.neighbors(cell).map(middle);
-        let (along_x, along_y) = (right - left, upper - lower);
+        let [left, right, lower, upper] = self.neighbors(cell);
+        let (u, v) =
+            (|cell: usize| self.u[cell] + self.u[cell + 1], |cell: usize| self.v[cell] + self.v[cell + self.stride]);
+        let (v_along_x, u_along_y) = (0.5 * (v(right) - v(left)), 0.5 * (u(upper) - u(lower)));
         let (ux, vy) = (self.u[cell + 1] - self.u[cell], self.v[cell + self.stride] - self.v[cell]);
-        0.25 * along_x.y * along_y.x - ux * vy
+        0.25 * v_along_x * u_along_y - ux * vy
     }
 }

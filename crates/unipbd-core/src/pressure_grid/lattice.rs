@@ -1,9 +1,11 @@
 //! The box of cells around the liquid, and the interpolation weights of its nodes.
 
+use super::images::Images;
 use super::spans::BLOCK;
 use crate::math::{Real, Vector, Vector64, wide};
 use crate::parallel::{Aabb, Parallelism};
 use crate::particles::Particles;
+use crate::periodic::{Periodic, PeriodicAxis};
 use crate::walls::Walls;
 use std::ops::Range;
 
@@ -30,6 +32,11 @@ pub(super) struct Lattice {
     pub width: usize,
     /// Cells along y.
     pub height: usize,
+    /// Periodic axes.
+    pub images: Images,
+    /// Where they start, and the farthest place on them, in cells; infinite along others.
+    start: Vector,
+    farthest: Vector,
 }
 
 /// The four nodes of one kind around a place: the number of the first, and how far the place lies on the way to its
@@ -57,8 +64,17 @@ pub(super) struct Around {
 }
 
 impl Lattice {
-    pub fn new(cell: Real) -> Self {
-        Lattice { cell, ..Lattice::default() }
+    /// Cells of this width [m], as many in a period as `periods` says.
+    pub fn new(cell: Real, (periods, periodic): ([usize; 2], Periodic)) -> Self {
+        let start = |axis: Option<PeriodicAxis>| axis.map_or(0.0, |axis| axis.from);
+        let farthest = |cells: usize| if cells > 0 { (cells as Real).next_down() } else { Real::INFINITY };
+        Lattice {
+            cell,
+            images: Images { periods },
+            start: Vector::new(start(periodic.x), start(periodic.y)),
+            farthest: Vector::new(farthest(periods[0]), farthest(periods[1])),
+            ..Lattice::default()
+        }
     }
 
     /// Cells from one row to the next.
@@ -69,6 +85,12 @@ impl Lattice {
     /// Cells in all, with those around.
     pub fn len(&self) -> usize {
         self.stride() * (self.height + 2)
+    }
+
+    /// The cells of each row, without the rim.
+    pub fn rows(&self) -> impl Iterator<Item = Range<usize>> {
+        let (stride, width) = (self.stride(), self.width);
+        (1..=self.height).map(move |row| row * stride + 1..row * stride + width + 1)
     }
 
     /// Lower left corner of a cell, given by its number [m].
@@ -85,12 +107,19 @@ impl Lattice {
     /// Places the box around all dense particles.
     pub fn cover(&mut self, particles: &Particles, walls: &Walls, parallelism: Parallelism) {
         self.origin = walls.anchor();
+        for axis in (0..2).filter(|&axis| self.images.periods[axis] > 0) {
+            self.origin[axis] = self.start[axis];
+        }
         let rows = particles.dense();
         let (low, high) = Aabb::of(&particles.start[..rows], parallelism).corners();
         let cells = |at: Real, axis: usize| {
             ((at - self.origin[axis]) / self.cell).floor().clamp(-FARTHEST_CELL, FARTHEST_CELL) as i32
         };
         let range = |axis: usize| {
+            let period = self.images.periods[axis];
+            if period > 0 {
+                return (0, period as i32);
+            }
             let (low, high) = (cells(low[axis], axis) - MARGIN, cells(high[axis], axis) + 1 + MARGIN);
             (low.div_euclid(STEP) * STEP, (high + STEP - 1).div_euclid(STEP) * STEP)
         };
@@ -99,8 +128,9 @@ impl Lattice {
         let limit = CELLS_PER_ROW * rows as f64 + CELLS_BESIDE;
         // Particles far from the rest are in free fall: the box covers only the particles near the lower left.
         if width * height > limit {
-            height = height.min((limit / width).max(limit.sqrt()));
-            width = width.min(limit / height);
+            let free = self.images.periods.map(|period| period == 0);
+            height = if free[1] { height.min((limit / width).max(limit.sqrt())) } else { height };
+            width = if free[0] { width.min(limit / height) } else { width };
         }
         let even = |cells: f64| 2 * (0.5 * cells) as usize;
         self.lower = Vector::new(x.0 as Real, y.0 as Real);
@@ -110,14 +140,15 @@ impl Lattice {
     /// A place in cells from the lower left corner of the box.
     #[inline(always)]
     pub fn place(&self, x: Vector) -> Vector {
-        (x - self.origin) * (1.0 / self.cell) - self.lower
+        ((x - self.origin) * (1.0 / self.cell) - self.lower).min(self.farthest)
     }
 
     /// Whether a place, in cells, has all its nodes, however it is rounded.
     #[inline(always)]
     pub fn holds(&self, place: Vector) -> bool {
         let (right, top) = (self.width as Real - 0.5, self.height as Real - 0.5);
-        place.x > 0.5 && place.y > 0.5 && place.x < right && place.y < top
+        let [along_x, along_y] = self.images.periods.map(|period| period > 0);
+        (along_x || place.x > 0.5 && place.x < right) && (along_y || place.y > 0.5 && place.y < top)
     }
 
     /// The cell that holds a place, in cells, if it is one of the box.

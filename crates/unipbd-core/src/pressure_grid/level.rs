@@ -1,6 +1,7 @@
 //! One grid of the cycle: its couplings, its sweeps, and the transfers to the next finer and coarser grid.
 
 use super::couplings::Couplings;
+use super::images::Images;
 use super::lattice::stride;
 use super::spans::{Spans, by_row};
 use super::{held_by, renew};
@@ -15,6 +16,7 @@ const RELAXATION: Real = 0.8;
 pub(super) struct Level {
     pub width: usize,
     pub height: usize,
+    pub images: Images,
     pub spans: Spans,
     pub couplings: Couplings,
     /// Relaxation over the sum of all couplings of a cell.
@@ -65,10 +67,11 @@ impl Level {
         (&self.spans, [right, upper, air, total, relax, right_side, x, other])
     }
 
-    pub fn resize(&mut self, width: usize, height: usize) {
-        if (self.width, self.height) == (width, height) {
+    pub fn resize(&mut self, width: usize, height: usize, images: Images) {
+        if (self.width, self.height, self.images) == (width, height, images) {
             return;
         }
+        self.images = images;
         (self.width, self.height) = (width, height);
         let cells = self.cells();
         self.spans.forget();
@@ -90,6 +93,7 @@ impl Level {
             let Some((i, j)) = self.within(cell) else { return 0.0 };
             fine.parts(i - 1, j - 1).into_iter().map(|part| fine.room[part]).fold(0.0, larger)
         });
+        self.images.copy(&mut room, self.stride());
         self.room = room;
     }
 
@@ -102,9 +106,9 @@ impl Level {
 
     /// Couplings between coarse cells: half the couplings of their children, because the distance is doubled.
     pub fn couple(&mut self, fine: &Level, parallelism: Parallelism) {
-        let (width, stride, of) = (self.width, self.stride(), &fine.couplings);
+        let (width, stride, of, images) = (self.width, self.stride(), &fine.couplings, self.images);
         let Couplings { right, upper, air, .. } = &mut self.couplings;
-        self.spans.each3(right, upper, air, parallelism, |first, right, upper, air| {
+        self.spans.each3(&mut *right, &mut *upper, &mut *air, parallelism, |first, right, upper, air| {
             for part in by_row(first..first + right.len(), stride) {
                 let row = part.row * stride;
                 for column in part.column.max(1)..(part.column + part.cells.len()).min(width + 1) {
@@ -115,6 +119,7 @@ impl Level {
                 }
             }
         });
+        images.couple([right, upper, air], stride);
     }
 
     /// Sums the couplings of each cell.
@@ -131,6 +136,7 @@ impl Level {
                 (total[k], relax[k]) = (sum, if sum > 0.0 { RELAXATION / sum } else { 0.0 });
             }
         });
+        [total, &mut self.relax].into_iter().for_each(|column| self.images.clear(column, stride));
     }
 
     /// Columns or rows of the coarser grid that contain a cell of this grid or are adjacent to it, including the rims.
@@ -159,7 +165,9 @@ impl Level {
     }
 
     /// Adds the correction from the coarser grid.
-    pub fn prolong(&mut self, coarse: &Level, parallelism: Parallelism) {
+    pub fn prolong(&mut self, coarse: &mut Level, parallelism: Parallelism) {
+        coarse.images.copy(&mut coarse.x, stride(coarse.width));
+        let coarse = &*coarse;
         let (stride, scale, relax) = (self.stride(), &self.scale, &self.relax);
         self.spans.each(&mut self.x, parallelism, |first, x| {
             for part in by_row(first..first + x.len(), stride) {
@@ -199,8 +207,12 @@ impl Level {
         let left = |x: Real, total: Real, coupled: Real, [scale, right_side]: [Real; 2]| {
             scale * (right_side - (total * x - coupled))
         };
+        self.images.copy(&mut self.x, stride(self.width));
         let (size, columns) = (self.size(), [&self.scale[..], &self.right_side]);
         self.couplings.stencil(&self.x, &mut other, size, parallelism, left, columns);
+        // A coarser grid without images takes nothing from them.
+        self.images.clear(&mut other, size.1);
+        Images { periods: self.images.coarser().periods.map(|period| 2 * period) }.copy(&mut other, size.1);
         self.other = other;
     }
 
@@ -221,6 +233,7 @@ impl Level {
         };
         for _ in 0..sweeps {
             let mut other = std::mem::take(&mut self.other);
+            self.images.copy(&mut self.x, stride(self.width));
             let (size, columns) = (self.size(), [&self.relax[..], &self.right_side]);
             self.couplings.stencil(&self.x, &mut other, size, parallelism, better, columns);
             self.other = std::mem::replace(&mut self.x, other);

@@ -12,6 +12,7 @@ mod components;
 mod couplings;
 mod felt;
 mod flow;
+mod images;
 mod lattice;
 mod level;
 mod mixture;
@@ -28,7 +29,9 @@ use crate::bytes::held;
 use crate::math::{Real, Vector, Vector64, wide};
 use crate::parallel::Parallelism;
 use crate::particles::{Particles, displaced};
+use crate::periodic::{Periodic, PeriodicAxis};
 use crate::rigid::{Bodies, Twist};
+use crate::scene::CELL;
 use crate::walls::{Moment, Outlines, Walls};
 use components::Components;
 use couplings::Couplings;
@@ -43,8 +46,6 @@ use solids::{Solids, Units, twist};
 use system::System;
 use transfer::Transfer;
 
-/// Cells of the grid are this many spacings wide: four particles each.
-const CELL: Real = 2.0;
 /// Part of the density error of a cell that the grid takes away in one frame, by moves alone.
 const DENSITY_RELAXATION: f64 = 0.06;
 /// Tolerance of the moves over that of the pressure: they are small, and the residual is left to the next substep. With
@@ -75,14 +76,23 @@ pub(crate) struct PressureGrid {
 }
 
 impl PressureGrid {
-    /// For particles of this spacing [m], with this accuracy of the pressure, and frames of this length [s].
-    pub(crate) fn new(spacing: Real, mixture: Mixture, accuracy: Accuracy, frame_time: f64) -> Self {
+    /// For particles of this spacing [m], with this accuracy of the pressure, and frames of this length [s]. Along periodic
+    /// axes there are `periods` cells.
+    pub(crate) fn new(
+        spacing: Real,
+        (periods, periodic): ([usize; 2], Periodic),
+        (mixture, accuracy): (Mixture, Accuracy),
+        frame_time: f64,
+    ) -> Self {
+        let of_period = |axis: Option<PeriodicAxis>, cells: usize| axis.map(|axis| axis.length / cells as Real);
+        let cell =
+            of_period(periodic.x, periods[0]).or(of_period(periodic.y, periods[1])).unwrap_or(CELL as Real * spacing);
         PressureGrid {
             spacing,
             mixture,
             accuracy,
             frame_time,
-            lattice: Lattice::new(CELL * spacing),
+            lattice: Lattice::new(cell, (periods, periodic)),
             openings: Openings::default(),
             transfer: Transfer::default(),
             system: System::default(),
@@ -92,6 +102,12 @@ impl PressureGrid {
             fluid: Couplings::default(),
             filled: Vec::new(),
         }
+    }
+
+    /// Mass of a cell that the heaviest fluid fills [kg].
+    fn cell_mass(&self) -> Real {
+        let width = self.lattice.cell / self.spacing;
+        width * width * self.mixture.heaviest
     }
 
     /// The places of matter in bodies that are no particles, to be written before a projection [m].
@@ -119,12 +135,17 @@ impl PressureGrid {
         };
         solve(self.accuracy, true);
         solve(Accuracy { tolerance: LOOSER_MOVES * self.accuracy.tolerance, ..self.accuracy }, false);
+        system.join_solutions(&self.lattice);
         system.difference(&self.lattice, &self.openings, multigrid.spans(), parallelism);
+        if self.openings.boundless {
+            self.system.keep_momentum(&self.lattice, self.transfer.fields());
+        }
         self.push(particles, dt as Real, parallelism);
         if let Some(immersed) = bodies {
             self.push_bodies(immersed.bodies, dt);
         }
         self.system.set_constants(&self.lattice, &self.openings, &self.components);
+        self.system.join_solutions(&self.lattice);
     }
 
     /// Sets up both systems.
@@ -146,16 +167,18 @@ impl PressureGrid {
         let (lattice, openings, stride) = (&self.lattice, &self.openings, self.lattice.stride());
         self.transfer.gather(lattice, particles, (&self.mixture, area), parallelism);
         self.transfer.fill(lattice, &self.filled, area);
+        self.transfer.join_images(lattice);
         let fields = self.transfer.fields();
+        let cell_mass = f64::from(self.cell_mass());
         let (system, multigrid, solids) = (&mut self.system, &mut self.multigrid, &mut self.solids);
         if let Some(immersed) = bodies {
-            let cell_mass = f64::from(CELL * CELL * self.mixture.heaviest);
             solids.find(lattice, immersed, Units { cell_mass, dt });
             system.cover(openings, solids, stride);
         }
         system.read_surface(lattice, openings, (fields, self.mixture.fills), parallelism);
         multigrid.find(&system.depth);
-        system.read_flow(fields, &self.mixture, multigrid.spans(), parallelism);
+        system.join_surface(lattice);
+        system.read_flow(lattice, (fields, &self.mixture), multigrid.spans(), parallelism);
         let (spans, couplings) = multigrid.finest_couplings();
         system.couple(lattice, openings, (spans, couplings), parallelism);
         multigrid.add_up(parallelism);
@@ -168,7 +191,7 @@ impl PressureGrid {
             multigrid.add_up(parallelism);
         }
         let (spans, couplings) = multigrid.finest_couplings();
-        self.components.find(couplings, spans, stride);
+        self.components.find(couplings, spans, (lattice.images, stride));
         multigrid.coarsen(parallelism);
         let taken_back = (DENSITY_RELAXATION * dt / self.frame_time) as Real;
         let rates = (dt as Real, taken_back);
@@ -178,7 +201,7 @@ impl PressureGrid {
     /// Loads the bodies with the pressure of the grid, and moves them with the fluid around them.
     fn push_bodies(&mut self, bodies: &mut Bodies, dt: f64) {
         let (solids, system, stride) = (&self.solids, &self.system, self.lattice.stride());
-        let cell_mass = f64::from(CELL * CELL * self.mixture.heaviest);
+        let cell_mass = f64::from(self.cell_mass());
         let farthest = f64::from(FARTHEST * self.spacing);
         for solid in &solids.solids {
             let [x, y, turn] = solids.load(solid, &system.pressure, stride).map(|load| load * cell_mass / dt);
@@ -233,7 +256,7 @@ impl PressureGrid {
     /// Impulse of the grid pressure on the measured walls in this substep [kg m/s].
     pub(crate) fn push_walls(&self, walls: &Walls, impulses: &mut [Vector64]) {
         let (lattice, openings, system) = (&self.lattice, &self.openings, &self.system);
-        let mass_per_length = CELL * CELL * self.mixture.heaviest / lattice.cell;
+        let mass_per_length = self.cell_mass() / lattice.cell;
         walls.measured_surfaces(lattice.bounds(), |surface| {
             let [from, to] = surface.ends;
             let steps = (STEPS_PER_CELL * (to - from).length() / lattice.cell).ceil();
@@ -250,7 +273,7 @@ impl PressureGrid {
     /// Loads the bodies of the outlines that are walls of the grid with its pressure.
     pub(crate) fn push_outlines(&self, outlines: &Outlines, bodies: &mut Bodies, dt: f64) {
         let (lattice, openings, system) = (&self.lattice, &self.openings, &self.system);
-        let mass_per_length = CELL * CELL * self.mixture.heaviest / lattice.cell;
+        let mass_per_length = self.cell_mass() / lattice.cell;
         outlines.fixed_surfaces(lattice.bounds(), lattice.cell / STEPS_PER_CELL, |surface| {
             let [from, to] = surface.ends;
             let steps = (STEPS_PER_CELL * (to - from).length() / lattice.cell).ceil().max(1.0);

@@ -1,7 +1,7 @@
 //! Conjugate gradients, with a cycle through ever coarser grids as the preconditioner.
 
 use super::couplings::Couplings;
-use super::lattice::Lattice;
+use super::lattice::{Lattice, stride};
 use super::level::Level;
 use super::openings::Openings;
 use super::spans::Spans;
@@ -55,10 +55,11 @@ impl Multigrid {
             (width, height, count) = (coarser(width), coarser(height), count + 1);
         }
         self.levels.resize_with(count, Level::default);
+        let mut images = lattice.images;
         (width, height) = (lattice.width, lattice.height);
         for level in &mut self.levels {
-            level.resize(width, height);
-            (width, height) = (coarser(width), coarser(height));
+            level.resize(width, height, images);
+            (width, height, images) = (coarser(width), coarser(height), images.coarser());
         }
         [&mut self.direction, &mut self.image].into_iter().for_each(|column| renew(column, lattice.len()));
         let room = &mut self.levels[0].room;
@@ -76,7 +77,7 @@ impl Multigrid {
         self.levels[0].spans.clear(&mut self.direction);
         self.levels.iter_mut().for_each(Level::clear);
         let finest = &mut self.levels[0];
-        finest.spans.find(depth, finest.stride());
+        finest.spans.find(depth, (finest.images, finest.stride()));
         self.pairs(|finer, coarser| {
             coarser.spans.coarsen(&finer.spans, finer.stride(), coarser.stride(), coarser.cells());
         });
@@ -128,6 +129,7 @@ impl Multigrid {
             out.copy_from_slice(&right_side[first..][..out.len()]);
         });
         problem.constrain(&mut finest.right_side);
+        finest.images.clear(&mut finest.right_side, stride(finest.width));
         let Accuracy { tolerance, most } = problem.accuracy();
         let (mut before, mut enough) = (0.0, 0.0);
         for step in 0..most {
@@ -150,7 +152,9 @@ impl Multigrid {
                     direction[k] = found[k] + kept * direction[k];
                 }
             });
+            finest.images.copy(&mut self.direction, finest.stride());
             problem.image(finest, (&self.direction, &mut self.image), parallelism);
+            finest.images.clear(&mut self.image, finest.stride());
             let (direction, image) = (&self.direction, &self.image);
             let energy = spans.dot(direction, image, parallelism);
             // The preconditioner is close to the inverse: anything else is rounding.
@@ -181,7 +185,7 @@ impl Multigrid {
         coarse.restrict(fine, parallelism);
         self.cycle(level + 1, parallelism);
         let (finer, coarser) = self.levels.split_at_mut(level + 1);
-        finer[level].prolong(&coarser[0], parallelism);
+        finer[level].prolong(&mut coarser[0], parallelism);
         finer[level].sweep(SWEEPS, parallelism);
     }
 

@@ -26,6 +26,8 @@ pub(super) struct Openings {
     /// Inverse of the open fraction of the surroundings of the cell, with the weights of particles; 0 inside walls.
     pub inverse: Vec<Real>,
     corners: Vec<Real>,
+    /// Whether there are no walls among the cells.
+    pub boundless: bool,
 }
 
 impl Openings {
@@ -79,6 +81,11 @@ impl Openings {
             let near = distance(centre) < 1.5 * cell;
             if near { 1.0 / larger(open_surroundings(centre, cell, distance), LEAST) } else { 1.0 }
         });
+        for column in [&mut self.left, &mut self.lower, &mut self.inverse] {
+            lattice.images.copy(column, stride);
+        }
+        let mut inverse = lattice.rows().flat_map(|row| &self.inverse[row]);
+        self.boundless = lattice.images.periods.iter().all(|&period| period > 0) && inverse.all(|&k| k == 1.0);
         true
     }
 

@@ -1,5 +1,6 @@
 //! Cells of a grid that hold liquid. All other cells stay zero and are not visited.
 
+use super::images::Images;
 use crate::bytes::held;
 use crate::math::Real;
 use crate::parallel::{CHUNK_ROWS, Parallelism};
@@ -56,7 +57,7 @@ spans_of_columns! {
 
 impl Spans {
     /// Finds the liquid, where the depth is not negative, and the cells to the right of and above it.
-    pub fn find(&mut self, depth: &[Real], stride: usize) {
+    pub fn find(&mut self, depth: &[Real], (images, stride): (Images, usize)) {
         let blocks = self.start(depth.len());
         for (block, depth) in depth.chunks(BLOCK).enumerate() {
             if depth.iter().any(|&depth| depth >= 0.0) {
@@ -67,6 +68,8 @@ impl Spans {
                 self.marks[above] |= above + stride / BLOCK < blocks;
             }
         }
+        // The cell to the right of the last one in a row that repeats, and the cell above, are the first ones.
+        images.borders(depth.len(), stride, |_, last, first| self.marks[first / BLOCK] |= depth[last] >= 0.0);
         self.collect();
     }
 
@@ -192,7 +195,7 @@ mod tests {
         let mut depth = vec![-1.0; CELLS];
         liquid.iter().for_each(|&cell| depth[cell] = 0.5);
         let mut spans = Spans::default();
-        spans.find(&depth, STRIDE);
+        spans.find(&depth, (Images::default(), STRIDE));
         spans
     }
 

@@ -128,14 +128,27 @@ impl System {
         }
     }
 
+    /// Gives the images of periodic axes the depth of their cells, once the liquid was found.
+    pub fn join_surface(&mut self, lattice: &Lattice) {
+        lattice.images.copy(&mut self.depth, lattice.stride());
+    }
+
     /// Reads the velocities in and beside the liquid from the sums of the particles.
-    pub fn read_flow(&mut self, fields: &Fields, mixture: &Mixture, spans: &Spans, parallelism: Parallelism) {
+    pub fn read_flow(
+        &mut self,
+        lattice: &Lattice,
+        (fields, mixture): (&Fields, &Mixture),
+        spans: &Spans,
+        parallelism: Parallelism,
+    ) {
+        let (images, stride) = (lattice.images, lattice.stride());
         spans.each2(&mut self.along_x, &mut self.along_y, parallelism, |first, along_x, along_y| {
             let (left, lower) = (&fields.left[first..][..along_x.len()], &fields.lower[first..][..along_x.len()]);
             for k in 0..along_x.len() {
                 (along_x[k], along_y[k]) = (mean(left[k]), mean(lower[k]));
             }
         });
+        [&mut self.along_x, &mut self.along_y].into_iter().for_each(|column| images.copy(column, stride));
         if mixture.simple {
             return;
         }
@@ -146,6 +159,7 @@ impl System {
                     *ease = if mass > 0.0 { number[k] / mass } else { 1.0 };
                 }
             });
+            images.copy(ease, stride);
         }
     }
 
@@ -252,6 +266,7 @@ impl System {
                 air[k] += HELD * (right[k] + upper[k] + behind + 1.0);
             }
         });
+        lattice.images.couple([&mut out.right, &mut out.upper, &mut out.air], stride);
     }
 
     /// Sets the divergence to be removed by the pressure within a substep of length `dt` [s], and the fraction of the
@@ -293,6 +308,12 @@ impl System {
         let mut divergence = std::mem::take(&mut self.divergence);
         solids.add_inflow(&mut divergence, lattice.stride(), |cell| self.counts(cell));
         self.divergence = divergence;
+    }
+
+    /// Gives the images of periodic axes the solutions of their cells.
+    pub fn join_solutions(&mut self, lattice: &Lattice) {
+        let (images, stride) = (lattice.images, lattice.stride());
+        [&mut self.pressure, &mut self.potential].into_iter().for_each(|column| images.copy(column, stride));
     }
 
     /// Memory held [bytes].

@@ -103,6 +103,17 @@ impl Transfer {
         }
     }
 
+    /// Adds the sums on both sides of periodic axes.
+    pub fn join_images(&mut self, lattice: &Lattice) {
+        let (images, stride, fields) = (lattice.images, lattice.stride(), &mut self.fields);
+        [&mut fields.left, &mut fields.lower, &mut fields.centre]
+            .into_iter()
+            .for_each(|sums| images.fold(sums, stride));
+        let [left, lower] = &mut fields.number;
+        let of_mixture = [left, lower, &mut fields.filling].into_iter().filter(|column| !column.is_empty());
+        of_mixture.for_each(|column| images.fold(column, stride));
+    }
+
     /// Memory held [bytes].
     pub fn memory_bytes(&self) -> usize {
         self.tasks.iter().map(|task| task.fields.memory_bytes()).sum::<usize>() + self.fields.memory_bytes()
@@ -124,7 +135,7 @@ fn add_up<T: Default + Copy + Add>(tasks: &[Task], first: usize, out: &mut [T], 
 }
 
 /// What a column of sums holds.
-trait Add {
+pub(super) trait Add {
     fn plus(self, other: Self) -> Self;
 }
 

@@ -10,6 +10,13 @@ const LEAST_PARTICLES: f64 = 60.0;
 /// could lie between the corners of its cells, and water of 50 spacings leaks through them.
 pub(crate) const WALL_OF_GRID: f64 = 4.0;
 
+/// Width of a cell of the grid [spacings]; along periodic axes it may differ by this part.
+pub(crate) const CELL: f64 = 2.0;
+const CELL_ERROR: f64 = 0.12;
+/// How well cells fill a period, and the least number of them.
+const PERIOD_ERROR: f64 = 1e-5;
+const LEAST_PERIOD: f64 = 8.0;
+
 /// Whether a grid carries the smooth part of the pressure.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
@@ -74,7 +81,7 @@ impl Scene {
         if let Some(name) = self.thin_wall() {
             return PressureGridChoice::off(format!("its cells are too wide for the wall that the body {name} is"));
         }
-        if !self.has_closed_tank() && self.materials().any(|material| material.is_two_sided()) {
+        if !self.has_closed_tank() && !self.repeats() && self.materials().any(|material| material.is_two_sided()) {
             return PressureGridChoice::off("gas in the open does not keep its momentum with it");
         }
         let particles = self.most_particles();
@@ -87,6 +94,32 @@ impl Scene {
     /// Whether a tank is closed on all sides.
     pub(crate) fn has_closed_tank(&self) -> bool {
         self.tank.iter().any(|tank| tank.open.is_empty())
+    }
+
+    /// Whether the domain has no end along both axes.
+    fn repeats(&self) -> bool {
+        self.domain.periodic_x.is_some() && self.domain.periodic_y.is_some()
+    }
+
+    /// Cells of the pressure grid in each period, zero without one. `None` where its square cells, about two spacings wide,
+    /// fill the periods in no even number.
+    pub(crate) fn cells_of_periods(&self) -> Option<[usize; 2]> {
+        let lengths = [self.domain.periodic_x, self.domain.periodic_y].map(|period| period.map(|[from, to]| to - from));
+        let Some(first) = lengths[0].or(lengths[1]) else { return Some([0; 2]) };
+        let fits = |cell: f64, length: Option<f64>| {
+            let cells = length.map_or(0.0, |length| length / cell);
+            let whole = (cells / 2.0).round() * 2.0;
+            let even = (cells - whole).abs() <= PERIOD_ERROR * whole;
+            (even && (length.is_none() || whole >= LEAST_PERIOD)).then_some(whole as usize)
+        };
+        // Multiples of eight are halved most often by the coarser grids.
+        let counts = [8.0, 4.0, 2.0].into_iter().flat_map(|step| {
+            let nearest = (first / (CELL * self.spacing) / step).round();
+            [0.0, -1.0, 1.0].map(|aside| (nearest + aside) * step)
+        });
+        let near = counts.filter(|count| (first / (count * CELL * self.spacing) - 1.0).abs() <= CELL_ERROR);
+        let mut cells = near.map(|count| lengths.map(|length| fits(first / count, length)));
+        cells.find_map(|[x, y]| Some([x?, y?]))
     }
 
     /// A body that no fluid moves and that is thinner than walls of the grid are.
@@ -112,7 +145,8 @@ impl Scene {
         let dry = !self.materials().any(|material| material.phase().is_fluid());
         let all = [
             (dry, "a scene without a fluid", OFF),
-            (periodic, "periodic domains", OFF),
+            (periodic && !self.body.is_empty(), "bodies in periodic domains", OFF),
+            (self.cells_of_periods().is_none(), "periods that are no even number of square cells", OFF),
             (self.solver.sleep, "sleep", "leave out solver.sleep"),
             (self.legacy.changes_density(), "the density constraints of [legacy]", "leave out the table [legacy]"),
         ];

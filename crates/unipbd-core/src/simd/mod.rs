@@ -8,7 +8,10 @@ pub(crate) mod avx512;
 #[cfg(not(feature = "f64"))]
 pub(crate) mod lanes;
 mod number;
-#[cfg(not(feature = "f64"))]
+#[cfg(all(
+    not(feature = "f64"),
+    any(miri, not(any(target_arch = "x86_64", all(target_arch = "wasm32", target_feature = "simd128"))))
+))]
 pub(crate) mod portable;
 pub(crate) mod space;
 #[cfg(all(target_arch = "wasm32", target_feature = "simd128", not(feature = "f64")))]
@@ -51,7 +54,8 @@ pub(crate) type Record = [Vector; 2];
 pub enum Level {
     /// One row at a time: the reference for the others.
     Scalar,
-    /// Arrays of eight, compiled to the instructions of the target.
+    /// Arrays of eight, compiled to the instructions of the target; only where there is no set with registers below, and
+    /// under Miri.
     Portable,
     /// Two vectors of four lanes; every x86-64 has it.
     Sse2,
@@ -95,7 +99,11 @@ impl Level {
     fn runs_here(self) -> bool {
         match self {
             Level::Scalar => true,
-            Level::Portable => cfg!(not(feature = "f64")),
+            // Arrays compile to ten times the code of registers: they are left out where there are registers.
+            Level::Portable => cfg!(all(
+                not(feature = "f64"),
+                any(miri, not(any(target_arch = "x86_64", all(target_arch = "wasm32", target_feature = "simd128"))))
+            )),
             // A module is checked as a whole before it runs: the instructions it was built with are there.
             Level::Simd128 => {
                 cfg!(all(target_arch = "wasm32", target_feature = "simd128", not(feature = "f64")))
