@@ -21,12 +21,13 @@ except ModuleNotFoundError:  # Python 3.10
     import tomli as tomllib
 
 TOPICS = {
-    "world": ("The world and its solver", ["", "domain", "environment", "solver", "view"]),
+    "world": ("The world and its solver", ["", "domain", "environment", "shaking", "solver", "view"]),
     "materials": ("Materials", ["liquid", "gas", "smoke", "solid"]),
     "particles": ("Where particles start, come and go",
                   ["block", "disc", "points", "wave", "emitter", "injector", "heater", "sink"]),
     "walls": ("Walls", ["tank", "obstacle", "half_plane"]),
     "bodies": ("Bodies, joints, ropes", ["body", "joint", "rope", "contacts"]),
+    "gauges": ("Gauges", ["gauge"]),
     "checks": ("Expectations and comparison with the papers", ["expect", "legacy"]),
 }
 UNIT = re.compile(r"\[((?:kg|m|s|N|J|1|degrees|rad|K)(?:[ /^*0-9a-z]*))\]")

@@ -176,6 +176,10 @@ fn points(scene: &Scene) -> Vec<(KeyPath, [f64; 2])> {
         add(&path, "from", rope.from);
         add(&path, "to", rope.to);
     }
+    for (path, gauge) in entries("gauge", &scene.gauge) {
+        gauge.at.into_iter().for_each(|point| add(&path, "at", point));
+        gauge.line.into_iter().flatten().for_each(|point| add(&path, "line", point));
+    }
     let domain = &scene.domain;
     let extents = [("periodic_x", domain.periodic_x), ("periodic_y", domain.periodic_y)];
     let given = extents.into_iter().filter_map(|(key, extent)| Some((KeyPath::key("domain").then(key), extent?)));
