@@ -1,7 +1,7 @@
 //! Samples of motions and accelerations, read from CSV files beside the scene file.
 
 use std::fs::File;
-use std::io::Read;
+use std::io::{ErrorKind, Read};
 use std::path::Path;
 
 use csv::{ReaderBuilder, StringRecord, Trim};
@@ -108,7 +108,10 @@ fn table(folder: &Path, file: &str, names: &[&str]) -> Result<Vec<Vec<f64>>, Wro
 fn text_of(path: &Path, file: &str) -> Result<String, Wrong> {
     let wrong = |message: String, hint: &str| Wrong { message, hint: hint.to_owned() };
     let hint = "the path is relative to the folder of the scene file";
-    let cannot = |error: std::io::Error| wrong(format!("cannot read {}: {error}", printable(file)), hint);
+    let cannot = |error: std::io::Error| match error.kind() {
+        ErrorKind::NotFound => wrong(format!("there is no file {}", printable(file)), hint),
+        _ => wrong(format!("cannot read {}: {error}", printable(file)), hint),
+    };
     let opened = File::open(path).map_err(cannot)?;
     if !opened.metadata().is_ok_and(|found| found.is_file()) {
         return Err(wrong(format!("{} is no file", printable(file)), hint));

@@ -1,6 +1,7 @@
 //! Bounds on the number of particles and on coordinates.
 
 use super::checker::{Checker, entries, number, rounded};
+use super::extremes::largest;
 use super::settings::LONGEST_DURATION;
 use crate::math::Vector64;
 use crate::phase::Phase;
@@ -171,6 +172,11 @@ fn points(scene: &Scene) -> Vec<(KeyPath, [f64; 2])> {
     }
     for (path, body) in entries("body", &scene.body) {
         add(&path, "position", body.position);
+        if let Some(table) = body.motion.as_ref().and_then(|motion| motion.table.as_ref()) {
+            let path = path.then("motion").then("table");
+            add(&path, "x", [largest(&table.x), 0.0]);
+            add(&path, "y", [0.0, largest(&table.y)]);
+        }
     }
     for (path, rope) in entries("rope", &scene.rope) {
         add(&path, "from", rope.from);
