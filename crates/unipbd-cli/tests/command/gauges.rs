@@ -48,6 +48,18 @@ fn readings_are_null_in_json_and_empty_in_tables_where_there_is_nothing() {
 }
 
 #[test]
+fn a_layout_of_viewers_plots_the_gauges() {
+    let place = place();
+    place.run(&["gauges.toml", "-q"]).exits(0);
+    let layout = place.run(&["layout", "gauges.mcap"]).exits(0).stdout();
+    let layout: serde_json::Value = serde_json::from_str(&layout).unwrap();
+    let paths = layout["configById"]["Plot!gauges"]["paths"].as_array().unwrap();
+    assert_eq!(paths.iter().map(|path| &path["value"]).collect::<Vec<_>>(), ["/gauges.front", "/gauges.dry"]);
+    assert_eq!(layout["layout"]["second"]["first"], "Plot!gauges");
+    assert_eq!(layout["layout"]["second"]["second"]["first"], "Plot!error");
+}
+
+#[test]
 fn plots_are_drawn_in_every_format() {
     let place = place();
     place.run(&["gauges.toml", "-q"]).exits(0);
