@@ -69,7 +69,10 @@ fn parquet_tables_hold_what_the_text_tables_hold() {
     for format in ["csv", "parquet"] {
         place.run(&["export", "float.mcap", "-o", "tables", "--format", format]).exits(0);
     }
+    place.run(&["export", "float.mcap", "-o", "again", "--format", "parquet"]).exits(0);
     for name in ["particles", "bodies", "diagnostics"] {
+        let bytes = |folder: &str| std::fs::read(place.path(&format!("{folder}/{name}.parquet"))).unwrap();
+        assert!(bytes("tables") == bytes("again"), "{name} comes out the same twice");
         let (head, rows) = table(&place, &format!("tables/{name}.csv"));
         let file = std::fs::File::open(place.path(&format!("tables/{name}.parquet"))).unwrap();
         let reader = SerializedFileReader::new(file).unwrap();

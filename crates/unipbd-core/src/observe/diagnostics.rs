@@ -56,7 +56,7 @@ table! {
         /// Kinetic energy.
         #[quantity(16, "J")]
         pub kinetic_energy: f64,
-        /// Potential energy in the uniform gravity of the scene, zero at the origin.
+        /// Potential energy in the uniform gravity of the scene and its shaking, zero at the origin.
         #[quantity(17, "J")]
         pub potential_energy: f64,
         /// Linear momentum.

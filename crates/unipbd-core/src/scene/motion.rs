@@ -25,11 +25,11 @@ pub struct MotionDescription {
     pub path: Vec<Station>,
     /// Begins the path anew after its last station.
     pub repeat_path: bool,
-    /// CSV file of a smooth motion, beside the scene file. Its first line names the columns: `time` [s], and one or more
-    /// of `x`, `y` [m] and `angle_deg` [degrees], from the start.
+    /// CSV file of a smooth motion, beside the scene file. Its first line names the columns: `time`, and one or more of
+    /// `x`, `y` and `angle_deg`, in the units of `table`.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub file: String,
-    /// The same as arrays, in place of a file.
+    /// Samples of a smooth motion, in place of a file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub table: Option<MotionTable>,
 }
@@ -75,10 +75,11 @@ pub struct MotionTable {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct Shaking {
-    /// CSV file, beside the scene file. Its first line names the columns: `time` [s], and `ax`, `ay` or both [m/s^2].
+    /// CSV file, beside the scene file. Its first line names the columns: `time`, and `ax`, `ay` or both, in the units of
+    /// `table`.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub file: String,
-    /// The same as arrays, in place of a file.
+    /// Samples, in place of a file.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub table: Option<AccelerationTable>,
 }

@@ -72,7 +72,7 @@ impl Solver {
         self.world.parts.frame_time
     }
 
-    /// Gravity [m/s^2].
+    /// Gravity [m/s^2], without what `shaking` adds to it.
     pub fn gravity(&self) -> crate::math::Vector64 {
         self.world.parts.exact_gravity
     }
