@@ -19,7 +19,7 @@ use crate::particles::{NewParticle, OptionalColumns, Particles};
 use crate::periodic::{Periodic, PeriodicAxis};
 use crate::phase::{MaterialIndex, Phase};
 use crate::pressure_grid::{Accuracy, Mixture, PressureGrid};
-use crate::rigid::Bodies;
+use crate::rigid::{Bodies, Waypoint, waypoints};
 use crate::rng::Rng;
 use crate::scene::{BodySolver, CheckedScene, GradientPoint, MaterialRef, Points, Problems, Scene, Slip, disc_points};
 use crate::sleep::LiquidSleep;
@@ -125,11 +125,13 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         pressure_scale,
         gravity: vector(scene.gravity.into()),
         exact_gravity: scene.gravity.into(),
+        shaking: shaking(scene),
         solid_walls: bodies::walls(scene),
         scene_bodies: rigid.as_ref().map_or(0, |rigid| rigid.views().len()),
         scene_mark: rigid.as_ref().map_or(0, RigidBodies::mark),
         no_bodies: RigidBodies::new(Bodies::new(scene.spacing), bodies::contacts(scene), None, scene.spacing),
         sample_material: seen.then(|| scene.materials().count() as MaterialIndex - 1),
+        gauges: scene.gauge.clone(),
         spacing: scene.spacing,
         frame_time: 1.0 / scene.fps,
         seed,
@@ -188,6 +190,13 @@ fn effects(scene: &Scene, seed: u64) -> Vec<Box<dyn Effect>> {
 
 fn boxed(effect: Option<impl Effect + 'static>) -> Option<Box<dyn Effect>> {
     effect.map(|effect| Box::new(effect) as Box<dyn Effect>)
+}
+
+/// The acceleration of a scene that is shaken, as a curve in the plane.
+fn shaking(scene: &Scene) -> Vec<Waypoint> {
+    let Some(table) = &scene.shaking.table else { return Vec::new() };
+    let [ax, ay] = table.columns().map(|(_, values)| values);
+    waypoints(&table.time, [ax, ay, &[]])
 }
 
 fn periodic(scene: &Scene) -> Periodic {

@@ -6,6 +6,8 @@ mod density_watch;
 mod diagnose;
 mod error;
 mod finite;
+mod gauges;
+mod gravity;
 mod integrate;
 mod pipeline;
 mod query;
