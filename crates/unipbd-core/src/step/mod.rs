@@ -2,14 +2,18 @@
 
 mod access;
 mod breaks;
+mod budget;
+mod clock;
 mod density_watch;
 mod diagnose;
 mod error;
 mod finite;
+mod fluid_parts;
 mod integrate;
 mod pipeline;
 mod query;
 mod remove;
+mod ropes;
 mod settle;
 mod sleep;
 mod solver;
@@ -21,7 +25,9 @@ mod view;
 mod watched;
 mod world;
 
+pub(crate) use clock::{Clock, Push};
 pub use error::SolverError;
+pub(crate) use fluid_parts::{FluidParts, Remake};
 pub use integrate::BodyForce;
 pub use pipeline::Stage;
 pub use query::{NearestSolid, Query, RayHit, Solid};
@@ -30,4 +36,4 @@ pub(crate) use stages::ABSURD_SPEED;
 pub use substeps::{Choice, Demand, SubstepRule};
 pub use threads::{MOST_THREADS, thread_count};
 pub use view::SubstepView;
-pub(crate) use world::{Clock, Parts, Population, Push};
+pub(crate) use world::{Parts, Population};
