@@ -117,7 +117,7 @@ fn a_faulty_change_of_emitters_changes_nothing() {
         (good().add_emitter(Emitter { name: String::new(), material: "wine".into(), ..chimney() }), "wine"),
         (good().add_emitter(Emitter { name: String::new(), speed: -1.0, ..chimney() }), "speed"),
         (good().add_emitter(Emitter { name: String::new(), width: f64::NAN, ..chimney() }), "width"),
-        (good().add_emitter(Emitter { name: String::new(), width: 1e12, ..chimney() }), "width"),
+        (good().add_emitter(Emitter { name: String::new(), width: 1e12, ..chimney() }), "particles"),
         (good().change_emitter(1, speed(f64::INFINITY)), "speed"),
         (good().change_emitter(0, speed(1.0)), "taken away"),
         (good().change_emitter(7, speed(1.0)), "no emitter 7"),
