@@ -1,12 +1,8 @@
-//! A most wall-clock time per frame: fewer substeps than wanted, then fewer sweeps of contacts.
+//! What frames cost, and what a budget allows.
 
 use std::time::Duration;
 
-use super::Solver;
-use super::substeps::Choice;
 use super::timings::Stopwatch;
-use super::world::World;
-use crate::observe::{Event, Severity, SubstepReason};
 
 /// Frames whose costs are remembered: one that the system held up counts little.
 const REMEMBERED: usize = 5;
@@ -14,15 +10,21 @@ const REMEMBERED: usize = 5;
 /// The budget of a frame, and what frames have cost. Not part of a state.
 #[derive(Default)]
 pub(super) struct Budget {
-    most: Option<Duration>,
+    pub most: Option<Duration>,
     /// Since the running frame began, and since its substeps did.
     running: Option<(Stopwatch, Stopwatch)>,
     /// Time of a substep, and of the rest of the frame, in the last frames [s].
     costs: Vec<[f64; 2]>,
-    told: bool,
+    /// Whether an event has told that it cuts.
+    pub told: bool,
 }
 
 impl Budget {
+    /// A budget, with nothing known yet.
+    pub fn new(most: Option<Duration>) -> Self {
+        Budget { most, ..Budget::default() }
+    }
+
     /// The second largest of the remembered costs: of a substep, and of the rest of a frame [s].
     fn expected(&self) -> Option<[f64; 2]> {
         let of = |part: usize| {
@@ -34,7 +36,7 @@ impl Budget {
     }
 
     /// Substeps that the budget allows, possibly none; `None` without a budget, or where nothing is known yet.
-    fn allowed(&self) -> Option<u32> {
+    pub fn allowed(&self) -> Option<u32> {
         let most = self.most?.as_secs_f64();
         let [substep, rest] = self.expected()?;
         // As a cast saturates, a substep that costs nothing is allowed any number of times.
@@ -61,50 +63,5 @@ impl Budget {
             self.costs.remove(0);
         }
         self.costs.push([stepping / f64::from(substeps), (whole - stepping).max(0.0)]);
-    }
-}
-
-impl World {
-    /// The substeps of a frame, no more than the budget allows, but one at least. Where even that is more, contacts are
-    /// swept once.
-    pub(super) fn within_budget(&mut self, choice: Choice) -> Choice {
-        let allowed = self.budget.allowed();
-        if let Some(rigid) = &mut self.parts.rigid {
-            rigid.contacts.sweep_once(allowed == Some(0));
-        }
-        let Some(allowed) = allowed.filter(|allowed| *allowed < choice.substeps) else { return choice };
-        let cut = Choice { substeps: allowed.max(1), wanted: choice.wanted, reason: SubstepReason::Budget };
-        if !self.budget.told {
-            self.budget.told = true;
-            let message = format!(
-                "substeps cut to {} of {} by the budget of {:.3} ms per frame: results depend on the machine from here on",
-                cut.substeps,
-                cut.wanted,
-                1e3 * self.budget.most.unwrap_or_default().as_secs_f64()
-            );
-            self.events.push(Event { time: self.clock.time, severity: Severity::Warning, message });
-        }
-        cut
-    }
-}
-
-impl Solver {
-    /// From now on a frame takes no more than about this time of the clock, for games: by what frames before it took,
-    /// fewer substeps are made than wanted, but one at least, and where one takes too long contacts are swept once. Then
-    /// `substeps_reason` of the diagnostics is [`SubstepReason::Budget`], and one event tells so. `None`, the default,
-    /// takes the budget away.
-    ///
-    /// Where it cuts, results depend on the machine and on what else it does: two runs differ. Where it does not, they
-    /// are the same bits as without. It is no part of a state. A bare WebAssembly module has no clock, and no budget.
-    pub fn set_budget(&mut self, most: Option<Duration>) {
-        self.world.budget = Budget { most, ..Budget::default() };
-        if let Some(rigid) = &mut self.world.parts.rigid {
-            rigid.contacts.sweep_once(false);
-        }
-    }
-
-    /// The most time per frame, if there is one.
-    pub fn budget(&self) -> Option<Duration> {
-        self.world.budget.most
     }
 }

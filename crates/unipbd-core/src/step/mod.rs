@@ -8,6 +8,7 @@ mod density_watch;
 mod diagnose;
 mod error;
 mod finite;
+mod first_body;
 mod fluid_parts;
 mod integrate;
 mod pipeline;
@@ -23,6 +24,7 @@ mod threads;
 mod timings;
 mod view;
 mod watched;
+mod within_budget;
 mod world;
 
 pub(crate) use clock::{Clock, Push};

@@ -112,7 +112,9 @@ fn a_float_that_grows_displaces_more_water() {
             lift += solver.bodies()[0].fluid_force.y / (solver.bodies()[0].mass * 9.81) / 120.0;
         }
         let height = solver.bodies()[0].position.y;
-        println!("{grid:?}: {height:.3} m high, lift over weight {lift:.3}, fastest {fastest:.2} m/s, {bar:.2} m/s with a new body");
+        println!(
+            "{grid:?}: {height:.3} m high, lift over weight {lift:.3}, fastest {fastest:.2} m/s, {bar:.2} m/s with a new body"
+        );
         assert!((lift - 1.0).abs() < 0.1 && fastest < 1.2 * bar + 1.0);
         // A shelf is a wall to the water, by its outline.
         solver.apply(&Edit::new().change_body(1, shape(Shape::Disc { radius: 0.3 }))).expect("it is sound");
