@@ -33,7 +33,7 @@ fn foreign_bytes_and_other_versions_are_named_as_such() {
         assert!(
             refused
                 .to_string()
-                .contains(&format!("has format version {other}, this version of unipbd reads version 9"))
+                .contains(&format!("has format version {other}, this version of unipbd reads version 10"))
         );
     }
 }
