@@ -1,6 +1,7 @@
 //! The simulation: what Python steps, looks at and edits.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError, TryLockError};
+use std::time::Duration;
 
 use numpy::{PyArray1, PyArray2, PyArray3};
 use pyo3::PyTraverseError;
@@ -107,6 +108,19 @@ impl Solver {
         let events = world.running.solver.take_events();
         world.unrecorded.extend(events.iter().cloned());
         Ok(events.into_iter().map(|event| (event.time, severity(event.severity), event.message)).collect())
+    }
+
+    /// The most time per frame [s], if there is one.
+    #[getter]
+    fn budget(&self, py: Python<'_>) -> PyResult<Option<f64>> {
+        Ok(self.lock(py)?.running.solver.budget().map(|most| most.as_secs_f64()))
+    }
+
+    fn set_budget(&self, py: Python<'_>, seconds: Option<f64>) -> PyResult<()> {
+        let most = seconds.map(Duration::try_from_secs_f64).transpose();
+        let most = most.map_err(|error| PyValueError::new_err(error.to_string()))?;
+        self.lock(py)?.running.solver.set_budget(most);
+        Ok(())
     }
 
     fn add_group(&self, py: Python<'_>, name: String, project: Py<PyAny>) -> PyResult<()> {

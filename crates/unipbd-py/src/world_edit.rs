@@ -4,11 +4,13 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::Deserialize;
 use toml::Value;
-use unipbd_core::edit::BodyChange;
+use unipbd_core::edit::{BodyChange, EmitterChange, EmitterReading};
 use unipbd_core::rigid::contact::Motor;
-use unipbd_core::scene::{BodyDescription, BodyKind, JointDescription};
+use unipbd_core::scene::{BodyDescription, BodyKind, Emitter, JointDescription, Rope};
+use unipbd_core::shapes::Shape;
 use unipbd_core::{Edit, Vector64};
 
+use crate::solver::Solver;
 use crate::{convert, errors};
 
 /// One change, named by its key `change`.
@@ -24,6 +26,12 @@ enum Request {
     AddJoint { joint: Box<JointDescription> },
     RemoveJoint { joint: u32 },
     SetMotor { joint: u32, speed: Option<f64>, limit: Option<f64> },
+    AddEmitter { emitter: Box<Emitter> },
+    ChangeEmitter { emitter: u32, speed: Option<f64>, temperature: Option<f64>, on: Option<bool> },
+    RemoveEmitter { emitter: u32 },
+    AddRope { rope: Box<Rope> },
+    CutRope { rope: u32, piece: u32 },
+    RemoveRope { rope: u32 },
 }
 
 /// Properties of a body.
@@ -43,12 +51,29 @@ struct Values {
     collides_with: Option<Vec<u8>>,
     collision_group: Option<i32>,
     user_data: Option<u64>,
+    radius: Option<f64>,
+    size: Option<[f64; 2]>,
+    outline: Option<Vec<[f64; 2]>>,
 }
 
 impl Values {
-    fn change(self) -> BodyChange {
+    /// The new shape, if one is given.
+    fn shape(&self, py: Python<'_>) -> PyResult<Option<Shape>> {
+        match (self.radius, self.size, &self.outline) {
+            (None, None, None) => Ok(None),
+            (Some(radius), None, None) => Ok(Some(Shape::Disc { radius })),
+            (None, Some([width, height]), None) => Ok(Some(Shape::rectangle(width, height))),
+            (None, None, Some(outline)) => {
+                Ok(Some(Shape::Polygon(outline.iter().copied().map(Vector64::from).collect())))
+            }
+            _ => Err(errors::edit_message(py, "a shape is one of radius, size and outline")),
+        }
+    }
+
+    fn change(self, py: Python<'_>) -> PyResult<BodyChange> {
         let mask = |list: Vec<u8>| list.iter().fold(0, |mask, &layer| mask | 1_u32 << (layer & 31));
-        BodyChange {
+        Ok(BodyChange {
+            shape: self.shape(py)?,
             kind: self.kind,
             mass: self.mass,
             friction: self.friction,
@@ -62,7 +87,7 @@ impl Values {
             collides_with: self.collides_with.map(mask),
             collision_group: self.collision_group,
             user_data: self.user_data,
-        }
+        })
     }
 }
 
@@ -76,7 +101,7 @@ pub fn with_changes(py: Python<'_>, mut edit: Edit, changes: Vec<Bound<'_, PyDic
             Request::AddBody { body } => edit.add_body(*body),
             Request::RemoveBody { body } => edit.remove_body(body),
             Request::MoveBody { body, position, angle } => edit.move_body(body, position.into(), angle),
-            Request::ChangeBody { body, values } => edit.change_body(body, values.change()),
+            Request::ChangeBody { body, values } => edit.change_body(body, values.change(py)?),
             Request::PushBody { body, impulse, point } => edit.push_body(body, impulse.into(), Vector64::from(point)),
             Request::AddJoint { joint } => edit.add_joint(*joint),
             Request::RemoveJoint { joint } => edit.remove_joint(joint),
@@ -84,7 +109,36 @@ pub fn with_changes(py: Python<'_>, mut edit: Edit, changes: Vec<Bound<'_, PyDic
                 let motor = speed.map(|speed| Motor { speed, max_torque: limit.unwrap_or(1e30) });
                 edit.set_motor(joint, motor)
             }
+            Request::AddEmitter { emitter } => edit.add_emitter(*emitter),
+            Request::ChangeEmitter { emitter, speed, temperature, on } => {
+                edit.change_emitter(emitter, EmitterChange { speed, temperature, on })
+            }
+            Request::RemoveEmitter { emitter } => edit.remove_emitter(emitter),
+            Request::AddRope { rope } => edit.add_rope(*rope),
+            Request::CutRope { rope, piece } => edit.cut_rope(rope, piece),
+            Request::RemoveRope { rope } => edit.remove_rope(rope),
         };
     }
     Ok(edit)
+}
+
+/// Name, material, middle of the face, speed, temperature, whether it runs, whether it was taken away.
+type EmitterRow = (String, String, (f64, f64), f64, f64, bool, bool);
+
+/// All emitters, by number.
+#[pyfunction]
+pub fn emitters(py: Python<'_>, solver: &Solver) -> PyResult<Vec<EmitterRow>> {
+    let readings = solver.lock(py)?.running.solver.emitters().into_iter();
+    let row = |reading: EmitterReading| {
+        let Emitter { name, material, position: [x, y], speed, temperature, .. } = reading.description;
+        (name, material, (x, y), speed, temperature, reading.running, reading.removed)
+    };
+    Ok(readings.map(row).collect())
+}
+
+/// Ids of the points, pieces that are cut, whether it was taken away, of each rope.
+#[pyfunction]
+pub fn ropes(py: Python<'_>, solver: &Solver) -> PyResult<Vec<(Vec<u32>, Vec<u32>, bool)>> {
+    let readings = solver.lock(py)?.running.solver.ropes().into_iter();
+    Ok(readings.map(|rope| (rope.points.collect(), rope.cuts, rope.removed)).collect())
 }

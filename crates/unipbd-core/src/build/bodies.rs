@@ -1,10 +1,9 @@
 //! Bodies, joints and walls of a scene in the form that the contact solver takes.
 
 use super::carve::Solid;
-use crate::coupling::RigidBodies;
 use crate::legacy;
 use crate::math::Vector64;
-use crate::rigid::contact::{ContactSettings, Contacts, DistanceRule, Joint, JointKind, SleepSettings};
+use crate::rigid::contact::{ContactSettings, Contacts, SleepSettings};
 use crate::rigid::{Bodies, BodySpec, Surface, Wall};
 use crate::rigid::{joint, specification, strength};
 use crate::scene::{BodyDescription, ContactDescription, Scene, Side, body_friction};
@@ -55,32 +54,6 @@ pub(super) fn solids(scene: &Scene) -> Vec<Solid> {
 fn specifications(description: &BodyDescription, number: usize) -> Vec<BodySpec> {
     let instances = description.instances(number);
     instances.map(|(name, position)| specification(description, name, position)).collect()
-}
-
-/// Adds the distance joints that keep bodies at the ends of ropes within the rope's length of its other end: another
-/// body, or the point that is held or carried there. `ends` are the ids of the first and last point of each rope.
-pub(super) fn join_ropes(scene: &Scene, ends: &[[u32; 2]], rigid: &mut RigidBodies) {
-    for (rope, ends) in scene.rope.iter().zip(ends) {
-        let find = |name: &Option<String>| {
-            let name = name.as_ref()?;
-            rigid.views().iter().position(|body| body.name == *name).map(|id| id as u32)
-        };
-        let (first, last) = (find(&rope.from_body), find(&rope.body));
-        let (from, to) = (Vector64::from(rope.from), Vector64::from(rope.to));
-        let Some((body, at)) = last.map(|body| (body, to)).or(first.map(|body| (body, from))) else { continue };
-        let other = first.filter(|_| last.is_some());
-        let (opposite, carrier) = if last.is_some() { (from, ends[0]) } else { (to, ends[1]) };
-        let bodies = &rigid.bodies;
-        let length = rope.full_length();
-        let compliance = rope.compliance * rope.pieces(scene.spacing);
-        let kind = JointKind::Distance { length, compliance, damping: 0.0, rule: DistanceRule::AtMost };
-        let other_anchor = other.map_or(opposite, |id| bodies.pose(id).apply_inverse(opposite));
-        let joint = Joint { body, other, anchor: bodies.pose(body).apply_inverse(at), other_anchor, kind };
-        let index = rigid.contacts.add_joint(joint, true);
-        if other.is_none() {
-            rigid.carry(index, carrier);
-        }
-    }
 }
 
 /// Walls in the order of the description: half-planes, closed sides of tanks, obstacles.

@@ -3,28 +3,25 @@
 mod bodies;
 mod carve;
 mod density;
-mod ropes;
+mod fluids;
+mod materials;
 mod waves;
 
-use crate::constraints::{ConstraintGroup, ShapeMatching, SurfaceTension, Viscosity};
-use crate::coupling::{Met, RigidBodies, is_outlined};
-use crate::effects::{
-    Baroclinic, Conduction, Drag, DragLaw, Effect, Heating, SmokeAdvection, VorticityConfinement, Xsph,
-};
-use crate::math::{Vector, Vector64, real, vector};
-use crate::neighbors::{ListCost, Neighbors, SearchPositions};
-use crate::observe::Material;
+use crate::constraints::{ConstraintGroup, ShapeMatching};
+use crate::coupling::{Met, RigidBodies, Ropes, is_outlined};
+use crate::effects::SmokeAdvection;
+use crate::math::{Vector64, real, vector};
+use crate::neighbors::{ListCost, Neighbors};
 use crate::parallel::Parallelism;
 use crate::particles::{NewParticle, OptionalColumns, Particles};
 use crate::periodic::{Periodic, PeriodicAxis};
 use crate::phase::{MaterialIndex, Phase};
-use crate::pressure_grid::{Accuracy, Mixture, PressureGrid};
 use crate::rigid::{Bodies, Waypoint, waypoints};
 use crate::rng::Rng;
-use crate::scene::{BodySolver, CheckedScene, GradientPoint, MaterialRef, Points, Problems, Scene, Slip, disc_points};
+use crate::scene::{BodySolver, CheckedScene, Points, Problems, Scene, Slip, disc_points};
 use crate::sleep::LiquidSleep;
 use crate::sources::{EmitterSystem, RemovalRules};
-use crate::step::{BodyForce, Parts, Solver, SubstepRule};
+use crate::step::{Parts, Solver, SubstepRule};
 use crate::walls::Walls;
 
 /// Skin, in spacings, that covers the moves of the projection, so that velocity passes find their pairs.
@@ -32,7 +29,6 @@ const LEAST_SKIN: f64 = 0.05;
 /// Streams of random numbers, far apart for different purposes.
 const BLOCK_STREAM: u64 = 1 << 32;
 const DISC_STREAM: u64 = 2 << 32;
-const WIND_STREAM: u64 = 3 << 32;
 
 /// How a scene is built.
 #[derive(Clone, Debug, Default)]
@@ -76,11 +72,7 @@ fn available_threads() -> usize {
 
 fn parts(scene: &Scene, seed: u64) -> Parts {
     let periodic = periodic(scene);
-    let effects = effects(scene, seed);
-    let search_positions = match scene.gradients() {
-        GradientPoint::Predicted => SearchPositions::Predicted,
-        GradientPoint::Start | GradientPoint::Early => SearchPositions::StartAndPredicted,
-    };
+    let effects = fluids::effects(scene, seed);
     let least_skin = if effects.is_empty() && scene.smoke.is_empty() { 0.0 } else { LEAST_SKIN * scene.spacing };
     let removal = RemovalRules::new(scene, periodic);
     let optional = OptionalColumns {
@@ -89,11 +81,13 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         rest: scene.solver.sleep,
     };
     let mut particles = particles(scene, seed, optional);
-    let ropes = ropes::Ropes::lay(scene, &mut particles);
+    let mut ropes = Ropes::default();
+    scene.rope.iter().for_each(|rope| ropes.lay(rope, scene, &mut particles));
     let mut rigid = rigid_bodies(scene, &mut particles);
     if let Some(rigid) = &mut rigid {
-        ropes.tied.iter().for_each(|(id, body, place)| rigid.tie(*id, body, *place));
-        bodies::join_ropes(scene, &ropes.ends, rigid);
+        for (number, rope) in scene.rope.iter().enumerate() {
+            ropes.fasten(number, rope, scene.spacing, rigid);
+        }
     }
     let seen = rigid.as_ref().is_some_and(RigidBodies::is_seen);
     particles.fit();
@@ -103,20 +97,30 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     let reach = real(scene.solver.kernel_radius * scene.spacing);
     let density = density::of(scene, periodic);
     let pressure_scale = density.pressure_scale;
-    let groups = groups(scene, density.group, ropes, rigid.as_ref());
+    let sourced = !scene.emitter.is_empty() || !scene.injector.is_empty();
+    let emitters = sourced.then(|| EmitterSystem::new(scene, seed));
+    let scene_emitters = emitters.as_ref().map(|emitters| emitters.columns().collect());
+    let mut groups = groups(scene, density.group, rigid.as_ref());
+    let of_others = groups.len();
+    groups.extend(ropes.groups());
     Parts {
         particles,
-        materials: shown_materials(scene),
-        forces: scene.materials().map(|material| body_force(material, scene)).collect(),
+        materials: materials::shown(scene),
+        forces: fluids::forces(scene),
         walls: Walls::new(scene),
         outlines: density.outlines,
         neighbors: Neighbors::new(periodic, reach, real(least_skin), cost),
-        search_positions,
-        pressure_grid: scene.uses_pressure_grid().then(|| pressure_grid(scene)),
+        search_positions: fluids::search_positions(scene),
+        pressure_grid: fluids::pressure_grid(scene, periodic),
+        rope_groups: of_others..groups.len(),
         groups,
+        scene_ropes: ropes.len(),
+        ropes,
         effects,
         smoke: (!scene.smoke.is_empty()).then(|| SmokeAdvection::new(scene)),
-        emitters: (!scene.emitter.is_empty() || !scene.injector.is_empty()).then(|| EmitterSystem::new(scene, seed)),
+        emitters,
+        scene_emitters,
+        kit: kit(scene),
         removal,
         sleep: LiquidSleep::new(scene, periodic),
         substeps: SubstepRule::new(scene),
@@ -129,9 +133,10 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         solid_walls: bodies::walls(scene),
         scene_bodies: rigid.as_ref().map_or(0, |rigid| rigid.views().len()),
         scene_mark: rigid.as_ref().map_or(0, RigidBodies::mark),
-        no_bodies: RigidBodies::new(Bodies::new(scene.spacing), bodies::contacts(scene), None, scene.spacing),
+        no_bodies: no_bodies(scene),
         sample_material: seen.then(|| scene.materials().count() as MaterialIndex - 1),
         gauges: scene.gauge.clone(),
+        remake: fluids::remake(scene, seed, periodic),
         spacing: scene.spacing,
         frame_time: 1.0 / scene.fps,
         seed,
@@ -140,56 +145,16 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     }
 }
 
-fn pressure_grid(scene: &Scene) -> PressureGrid {
-    let mixture = Mixture::new(scene);
-    // The light fluid feels the residual of the heavy one.
-    let tolerance = scene.solver.pressure_tolerance * mixture.lightest().sqrt();
-    let accuracy = Accuracy { tolerance, most: scene.solver.pressure_steps };
-    let periods = (scene.cells_of_periods().unwrap_or_default(), periodic(scene));
-    PressureGrid::new(real(scene.spacing), periods, (mixture, accuracy), 1.0 / scene.fps)
-}
-
 fn groups(
     scene: &Scene,
     density: Box<dyn ConstraintGroup>,
-    ropes: ropes::Ropes,
     rigid: Option<&RigidBodies>,
 ) -> Vec<Box<dyn ConstraintGroup>> {
-    let mut groups: Vec<Box<dyn ConstraintGroup>> = Vec::new();
-    // A force is applied before the constraints that act against it.
-    if let Some(tension) = SurfaceTension::new(scene) {
-        groups.push(Box::new(tension));
-    }
-    if let Some(viscosity) = Viscosity::new(scene) {
-        groups.push(Box::new(viscosity));
-    }
-    if scene.materials().any(|material| material.phase().is_fluid()) {
-        groups.push(density);
-    }
+    let mut groups = fluids::groups(scene, density);
     if let Some(rigid) = rigid.filter(|rigid| rigid.any_matched()) {
         groups.push(Box::new(ShapeMatching::new(rigid.members(), scene.spacing, scene.contacts.friction_rule)));
     }
-    groups.extend(ropes.groups());
     groups
-}
-
-/// The effects of a scene, in the order in which they add their changes.
-fn effects(scene: &Scene, seed: u64) -> Vec<Box<dyn Effect>> {
-    let wind = Rng::new(seed, WIND_STREAM).state();
-    let effects = [
-        boxed(Xsph::new(scene)),
-        boxed(Drag::new(scene, DragLaw::Thin, wind)),
-        boxed(Drag::new(scene, DragLaw::Quadratic, wind)),
-        boxed(Baroclinic::new(scene)),
-        boxed(Conduction::new(scene)),
-        boxed(Heating::new(scene)),
-        boxed(VorticityConfinement::new(scene)),
-    ];
-    effects.into_iter().flatten().collect()
-}
-
-fn boxed(effect: Option<impl Effect + 'static>) -> Option<Box<dyn Effect>> {
-    effect.map(|effect| Box::new(effect) as Box<dyn Effect>)
 }
 
 /// The acceleration of a scene that is shaken, as a curve in the plane.
@@ -205,16 +170,26 @@ fn periodic(scene: &Scene) -> Periodic {
     Periodic { x: axis(scene.domain.periodic_x), y: axis(scene.domain.periodic_y) }
 }
 
-fn body_force(material: MaterialRef<'_>, scene: &Scene) -> BodyForce {
-    let (factor, thermal) = match material {
-        MaterialRef::Liquid(liquid) => (liquid.gravity_factor, false),
-        MaterialRef::Gas(gas) => (gas.gravity_factor, true),
-        MaterialRef::Solid(solid) => (solid.gravity_factor, false),
-        // For bodies that are particles: all other samples have no inertia of their own.
-        MaterialRef::Rigid => (1.0, false),
-        MaterialRef::Smoke(_) => return BodyForce { acceleration: Vector::ZERO, factor: 0.0, thermal: false },
-    };
-    BodyForce::new(scene.gravity.into(), factor, thermal)
+/// Materials and settings alone: what new emitters and ropes are made of, and checked with.
+fn kit(scene: &Scene) -> Scene {
+    Scene {
+        spacing: scene.spacing,
+        fps: scene.fps,
+        duration: 1.0 / scene.fps,
+        solver: scene.solver.clone(),
+        liquid: scene.liquid.clone(),
+        gas: scene.gas.clone(),
+        smoke: scene.smoke.clone(),
+        solid: scene.solid.clone(),
+        ..Scene::default()
+    }
+}
+
+/// What a first body is added to.
+fn no_bodies(scene: &Scene) -> RigidBodies {
+    let fluid = scene.materials().any(|material| material.phase().is_fluid());
+    let met = fluid.then(|| Met { first_sample: 0, outlines: lets_outlines(scene) });
+    RigidBodies::new(Bodies::new(scene.spacing), bodies::contacts(scene), met, scene.spacing)
 }
 
 /// The bodies of a scene; their samples are added to the particles where there is a fluid to see them.
@@ -334,38 +309,4 @@ impl Filling<'_> {
             });
         }
     }
-}
-
-/// Colours of materials that name none, in turn within each phase.
-const LIQUIDS: [[u8; 3]; 4] = [[58, 134, 222], [231, 111, 81], [42, 157, 143], [233, 196, 106]];
-const GASES: [[u8; 3]; 2] = [[124, 152, 179], [179, 146, 172]];
-const SMOKES: [[u8; 3]; 2] = [[232, 236, 241], [244, 190, 140]];
-
-fn shown_materials(scene: &Scene) -> Vec<Material> {
-    let mut counts = [0; Phase::ALL.len()];
-    let shown = |material: MaterialRef<'_>| {
-        let number = &mut counts[material.phase() as usize];
-        let palette: &[[u8; 3]] = match material.phase() {
-            Phase::Gas => &GASES,
-            Phase::Smoke => &SMOKES,
-            _ => &LIQUIDS,
-        };
-        let default = palette[*number % palette.len()];
-        *number += 1;
-        Material {
-            name: material.name().to_owned(),
-            phase: material.phase(),
-            density: material.density(),
-            color: material.color().and_then(parse_color).unwrap_or(default),
-        }
-    };
-    scene.materials().map(shown).collect()
-}
-
-/// `"#rrggbb"` as red, green, blue.
-fn parse_color(text: &str) -> Option<[u8; 3]> {
-    let digits = text.strip_prefix('#').filter(|digits| digits.len() == 6)?;
-    let value = u32::from_str_radix(digits, 16).ok()?;
-    let [_, red, green, blue] = value.to_be_bytes();
-    Some([red, green, blue])
 }

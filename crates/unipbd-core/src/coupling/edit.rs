@@ -1,5 +1,7 @@
 //! Bodies and joints that come, change and go between two frames.
 
+use std::ops::Range;
+
 use super::{RigidBodies, is_outlined, near};
 use crate::math::{Vector, Vector64, vector};
 use crate::particles::{NewParticle, Particles};
@@ -19,8 +21,16 @@ impl RigidBodies {
     ) {
         let Ok(body) = self.bodies.add(spec) else { return };
         self.bodies.rebase(body, time);
+        let ids = self.add_samples(body, particles, material);
+        self.sample_ids.push(ids);
+        self.near.push(near(&self.bodies.views()[body as usize], self.seen, spacing));
+        self.find_met();
+    }
+
+    /// Adds the samples of a body where a fluid is to see them; returns their ids, from the first to one past the last.
+    fn add_samples(&self, body: u32, particles: &mut Particles, material: Option<MaterialIndex>) -> (u32, u32) {
         let first = particles.ids_given();
-        let outlined = self.outlines && is_outlined(&self.bodies.views()[body as usize], spacing);
+        let outlined = self.outlines && is_outlined(&self.bodies.views()[body as usize], self.spacing);
         if let Some(material) = material.filter(|_| self.seen && !outlined) {
             let pose = self.bodies.pose(body);
             for &sample in self.bodies.samples(body) {
@@ -35,9 +45,7 @@ impl RigidBodies {
                 });
             }
         }
-        self.sample_ids.push((first, particles.ids_given()));
-        self.near.push(near(&self.bodies.views()[body as usize], self.seen, spacing));
-        self.find_met();
+        (first, particles.ids_given())
     }
 
     /// Takes a body away with its joints; returns the ids of its samples, to be removed, and of the ends of ropes that
@@ -68,10 +76,31 @@ impl RigidBodies {
     }
 
     /// Changes properties of a body; what slept with it wakes.
-    pub(crate) fn change_body(&mut self, body: u32, change: &BodyChange) {
+    pub(crate) fn change_body(&mut self, body: u32, change: &BodyChange, time: f64) {
         self.contacts.wake_neighbors(&mut self.bodies, body);
-        self.bodies.change(body, change);
+        self.bodies.change(body, change, time);
         self.find_met();
+    }
+
+    /// The same with another shape: adds the samples of the new one, and returns the ids of the old ones, to be removed.
+    pub(crate) fn reshape_body(
+        &mut self,
+        body: u32,
+        change: &BodyChange,
+        time: f64,
+        particles: &mut Particles,
+        material: Option<MaterialIndex>,
+    ) -> Range<u32> {
+        // Contacts of the old outline end.
+        self.contacts.wake_neighbors(&mut self.bodies, body);
+        self.bodies.hollow(body);
+        self.contacts.bodies_changed(&mut self.bodies);
+        self.bodies.change(body, change, time);
+        let old = self.samples_of(body);
+        self.sample_ids[body as usize] = self.add_samples(body, particles, material);
+        self.near[body as usize] = near(&self.bodies.views()[body as usize], self.seen, self.spacing);
+        self.find_met();
+        old
     }
 
     /// Pushes a body by an impulse [N s] at a point [m].

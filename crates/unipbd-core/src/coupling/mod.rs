@@ -5,8 +5,10 @@ mod demand;
 mod edit;
 mod outlined;
 mod push_out;
+mod ropes;
 mod saved;
 mod soft_bodies;
+mod ties;
 
 use crate::math::{Real, Vector, Vector64, direction, vector, wide};
 use crate::particles::Particles;
@@ -16,6 +18,8 @@ use crate::rows::RowIndex;
 use outlined::Meeting;
 pub(crate) use outlined::{Met, is_outlined};
 use push_out::Penetration;
+pub use ropes::RopeReading;
+pub(crate) use ropes::{MOST_PIECES, Ropes};
 
 /// A little more than half the diagonal of a lattice cell [spacings].
 const LEAST_NEAR: f64 = 0.75;
@@ -38,6 +42,9 @@ pub struct RigidBodies {
     /// How the fluid meets each body.
     #[serde(skip)]
     met: Vec<Meeting>,
+    /// Bodies with samples, in the order of the ids of these.
+    #[serde(skip)]
+    sampled: Vec<u32>,
     /// Distance of samples [m].
     #[serde(skip)]
     spacing: f64,
@@ -101,6 +108,7 @@ impl RigidBodies {
             seen,
             outlines,
             met: Vec::new(),
+            sampled: Vec::new(),
             spacing,
             near,
             far: (0.5 * spacing) as Real,
@@ -113,31 +121,6 @@ impl RigidBodies {
         rigid.list_matched(spacing);
         rigid.find_met();
         rigid
-    }
-
-    /// From now on a particle moves with the body of this name, from a place in the world [m].
-    pub(crate) fn tie(&mut self, id: u32, body: &str, at: Vector64) {
-        let Some(number) = self.views().iter().position(|view| view.name == body) else { return };
-        let pose = self.bodies.pose(number as u32);
-        let place = direction(-pose.angle).rotate(at - pose.position);
-        self.tied.push(Tied { id, body: number as u32, place });
-    }
-
-    /// From now on the anchor of a joint in the world is a particle, and the joint acts while that is held.
-    pub(crate) fn carry(&mut self, joint: usize, id: u32) {
-        self.carried.push(Carried { joint: joint as u32, id });
-    }
-
-    /// Takes the anchors of joints to the particles that carry them, which are predicted for the substep.
-    pub(crate) fn carry_anchors(&mut self, particles: &Particles, rows: &RowIndex) {
-        for carried in &self.carried {
-            let held = rows.row(carried.id).map(|row| row as usize).filter(|&row| particles.inverse_mass[row] == 0.0);
-            let way = held.map(|row| {
-                let start = wide(particles.start[row]);
-                (start, wide(particles.position[row]) - start)
-            });
-            self.contacts.carry(carried.joint as usize, way, &mut self.bodies);
-        }
     }
 
     /// The bodies as they are read from outside.
@@ -315,7 +298,9 @@ impl RigidBodies {
 
     /// Whether the sample of this id may sleep: its body is not kinematic.
     pub(crate) fn may_rest(&self, id: u32) -> bool {
-        let body = self.sample_ids.partition_point(|&(first, _)| first <= id) - 1;
+        let after = self.sampled.partition_point(|&body| self.sample_ids[body as usize].0 <= id);
+        let Some(&body) = self.sampled[..after].last() else { return false };
+        let body = body as usize;
         let matched = self.bodies.elasticity(body).is_some();
         !matched && (self.bodies.is_dynamic(body) || !self.bodies.is_active(body))
     }

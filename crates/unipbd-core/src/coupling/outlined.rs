@@ -38,7 +38,9 @@ pub(super) enum Meeting {
 
 /// Whether a body is a wall to fluids by its outline, where the scene lets it.
 pub(crate) fn is_outlined(body: &Body, spacing: f64) -> bool {
-    body.kind != BodyKind::Dynamic && !body.samples.is_empty() && shape(body).thickness() >= THIN * spacing
+    // Samples are what a viscous fluid sticks to.
+    let met = !body.samples.is_empty() && !body.surface.no_slip;
+    body.kind != BodyKind::Dynamic && met && shape(body).thickness() >= THIN * spacing
 }
 
 /// The shape of a body about its centre of mass.
@@ -58,14 +60,18 @@ impl RigidBodies {
 
     /// Finds the bodies that the fluid meets: bodies came, changed or went.
     pub(super) fn find_met(&mut self) {
-        let sampled = |body: u32| self.sample_ids[body as usize].0 < self.sample_ids[body as usize].1;
+        let ids = &self.sample_ids;
+        let sampled = |body: u32| ids[body as usize].0 < ids[body as usize].1;
         let met = |body: u32| match (sampled(body), self.by_outline(body)) {
             (true, _) => Meeting::Samples,
             (_, true) if self.is_wall_of_grid(body) => Meeting::FixedOutline,
             (_, true) => Meeting::Outline,
             _ => Meeting::None,
         };
-        self.met = (0..self.bodies.len() as u32).map(met).collect();
+        let met: Vec<Meeting> = (0..self.bodies.len() as u32).map(met).collect();
+        let mut order: Vec<u32> = (0..self.bodies.len() as u32).filter(|&body| sampled(body)).collect();
+        order.sort_unstable_by_key(|&body| ids[body as usize].0);
+        (self.met, self.sampled) = (met, order);
     }
 
     fn is_wall_of_grid(&self, body: u32) -> bool {

@@ -30,13 +30,15 @@ impl RigidBodies {
             let count = if self.seen { view.samples.len() as u32 } else { 0 };
             first.checked_add(count) == Some(end) || (self.outlines && first == end)
         });
-        let rising = saved.sample_ids.windows(2).all(|two| two[0].1 <= two[1].0);
+        let mut ids: Vec<(u32, u32)> = saved.sample_ids.iter().copied().filter(|(first, end)| first < end).collect();
+        ids.sort_unstable();
+        let apart = ids.windows(2).all(|two| two[0].1 <= two[1].0);
         // Bodies that are particles neither come nor go.
         let soft = |bodies: &Bodies, ids: &[(u32, u32)]| -> Vec<(usize, Elasticity, (u32, u32))> {
             let of = |id: usize| bodies.elasticity(id).map(|how| (id, how, ids[id]));
             (0..bodies.len()).filter_map(of).collect()
         };
-        if !(counted && rising && soft(&bodies, &saved.sample_ids) == soft(&self.bodies, &self.sample_ids)) {
+        if !(counted && apart && soft(&bodies, &saved.sample_ids) == soft(&self.bodies, &self.sample_ids)) {
             return None;
         }
         let near = bodies.views().iter().map(|body| near(body, self.seen, spacing)).collect();

@@ -16,6 +16,7 @@ pub(super) struct Felt {
     /// Samples of bodies that are gone, by id.
     samples: Vec<u32>,
     bodies_changed: bool,
+    plan_changed: bool,
 }
 
 impl Solver {
@@ -34,6 +35,8 @@ impl Solver {
             if let Some(rigid) = &mut parts.rigid {
                 rigid.changed(&mut parts.particles, &rows);
             }
+        }
+        if felt.bodies_changed || felt.plan_changed {
             self.world.replan();
         }
         felt
@@ -44,6 +47,17 @@ impl Solver {
             WorldChange::Gravity(gravity) => self.world.set_gravity(*gravity),
             WorldChange::AddBody(body) => self.add_bodies(body, felt),
             WorldChange::AddJoint(joint) => self.add_joint(joint),
+            WorldChange::AddEmitter(_) | WorldChange::ChangeEmitter { .. } | WorldChange::RemoveEmitter(_) => {
+                felt.places.extend(self.change_emitters(change));
+                felt.plan_changed = true;
+            }
+            WorldChange::AddRope(_) | WorldChange::CutRope { .. } | WorldChange::RemoveRope(_) => {
+                let (places, gone) = self.change_ropes(change);
+                felt.places.extend(places);
+                felt.samples.extend(gone);
+                // Joints of ropes may have come or gone.
+                felt.bodies_changed = true;
+            }
             _ => self.change_known(change, felt),
         }
     }
@@ -72,7 +86,15 @@ impl Solver {
             }
             WorldChange::ChangeBody { body, ref change } => {
                 felt.places.extend(rigid.places_of(body, &parts.particles, &rows));
-                rigid.change_body(body, change);
+                if change.shape.is_none() {
+                    rigid.change_body(body, change, time);
+                } else {
+                    let material = parts.sample_material;
+                    let old = rigid.reshape_body(body, change, time, &mut parts.particles, material);
+                    felt.samples.extend(old);
+                    let new = rigid.samples_of(body).len();
+                    felt.places.extend_from_slice(&parts.particles.position[parts.particles.len() - new..]);
+                }
             }
             WorldChange::Strike { body, impulse, point } => rigid.strike_body(body, impulse, point),
             WorldChange::RemoveJoint(joint) => rigid.contacts.remove_joint(joint as usize, &mut rigid.bodies),
@@ -88,6 +110,7 @@ impl Solver {
     }
 
     fn add_bodies(&mut self, description: &BodyDescription, felt: &mut Felt) {
+        self.world.await_bodies();
         let (time, parts) = (self.world.clock.time, &mut self.world.parts);
         let rigid = parts.rigid.get_or_insert_with(|| parts.no_bodies.clone());
         let number = rigid.views().len();

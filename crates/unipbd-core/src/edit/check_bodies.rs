@@ -1,18 +1,23 @@
 //! Whether changes of bodies, joints and gravity can be made.
 
 use super::check::{Checker, both_finite, finite};
+use super::emitters::Emitters;
+use super::error::unfit;
+use super::ropes::Lines;
 use super::world::WorldChange;
 use super::{BodyChange, Edit, EditError};
-use crate::phase::Phase;
 use crate::rigid::BodyKind;
 use crate::rigid::contact::{JointKind, Motor};
 use crate::scene::{BodyDescription, BodySolver, JointDescription, MOST_BODIES, Scene};
+use crate::shapes::Shape;
 
 /// The bodies and joints that there will be after the changes so far.
-struct Roster {
+struct Roster<'a> {
     bodies: Vec<Entry>,
     /// Kinds of the joints; none for those that are over.
     joints: Vec<Option<JointKind>>,
+    emitters: Emitters<'a>,
+    ropes: Lines<'a>,
 }
 
 struct Entry {
@@ -20,10 +25,6 @@ struct Entry {
     there: bool,
     soft: bool,
     kind: BodyKind,
-}
-
-fn unfit<T>(reason: impl Into<String>) -> Result<T, EditError> {
-    Err(EditError::Unfit(reason.into()))
 }
 
 impl Checker<'_> {
@@ -41,11 +42,13 @@ impl Checker<'_> {
         });
         let joints = self.solver.joints().into_iter();
         let joints = joints.map(|joint| (!joint.removed).then_some(joint.joint.kind));
-        let mut roster = Roster { bodies: bodies.collect(), joints: joints.collect() };
+        let emitters = Emitters::of(self.solver);
+        let ropes = Lines::of(self.solver);
+        let mut roster = Roster { bodies: bodies.collect(), joints: joints.collect(), emitters, ropes };
         edit.world.iter().try_for_each(|change| self.world_change(change, &mut roster))
     }
 
-    fn world_change(&self, change: &WorldChange, roster: &mut Roster) -> Result<(), EditError> {
+    fn world_change(&self, change: &WorldChange, roster: &mut Roster<'_>) -> Result<(), EditError> {
         match change {
             WorldChange::Gravity(gravity) => both_finite("gravity", 0, *gravity),
             WorldChange::AddBody(body) => self.new_body(body, roster),
@@ -63,6 +66,7 @@ impl Checker<'_> {
             WorldChange::ChangeBody { body, change } => {
                 roster.rigid(*body)?;
                 values(change)?;
+                change.shape.as_ref().map_or(Ok(()), |shape| self.new_shape(shape))?;
                 if let Some(kind) = change.kind {
                     roster.bodies[*body as usize].kind = kind;
                 }
@@ -82,6 +86,19 @@ impl Checker<'_> {
                 Ok(())
             }
             WorldChange::Motor { joint, motor } => motor_fits(roster.joint(*joint)?, *motor),
+            WorldChange::AddEmitter(emitter) => roster.emitters.add(emitter),
+            WorldChange::ChangeEmitter { emitter, change } => roster.emitters.change(*emitter, change),
+            WorldChange::RemoveEmitter(emitter) => roster.emitters.remove(*emitter),
+            WorldChange::AddRope(rope) => {
+                rope.body.iter().chain(&rope.from_body).try_for_each(|name| roster.holds(name, "rope"))?;
+                self.positions(&[rope.from.into(), rope.to.into()])?;
+                // A rope on a body brings a joint.
+                let tied = rope.body.is_some() || rope.from_body.is_some();
+                roster.joints.extend(tied.then_some(Some(JointKind::Weld { angle: 0.0 })));
+                roster.ropes.add(rope)
+            }
+            WorldChange::CutRope { rope, piece } => roster.ropes.cut(*rope, *piece),
+            WorldChange::RemoveRope(rope) => roster.ropes.remove(*rope),
         }
     }
 
@@ -90,16 +107,9 @@ impl Checker<'_> {
         Scene { spacing: self.solver.spacing(), fps: 1.0 / self.solver.frame_time(), ..Scene::default() }
     }
 
-    fn new_body(&self, body: &BodyDescription, roster: &mut Roster) -> Result<(), EditError> {
+    fn new_body(&self, body: &BodyDescription, roster: &mut Roster<'_>) -> Result<(), EditError> {
         if body.solver == BodySolver::ShapeMatching {
             return unfit("a body that is particles cannot be added to a run: describe it in the scene");
-        }
-        let parts = &self.solver.world.parts;
-        let fluid = parts.materials.iter().any(|material| material.phase.is_fluid());
-        if fluid && parts.sample_material.is_none() {
-            return unfit(
-                "the fluids of the scene know of no bodies: give the scene one [[body]], such as a small static one far away",
-            );
         }
         let scene = Scene { body: vec![body.clone()], ..self.small_scene() };
         let problems = scene.validate();
@@ -115,21 +125,25 @@ impl Checker<'_> {
         if roster.bodies.iter().filter(|entry| entry.there).count() > MOST_BODIES {
             return unfit(format!("no more than {MOST_BODIES} bodies fit"));
         }
-        let materials = self.solver.materials();
-        debug_assert!(parts.sample_material.is_none_or(|index| materials[usize::from(index)].phase == Phase::Rigid));
         Ok(())
     }
 
-    fn new_joint(&self, joint: &JointDescription, roster: &mut Roster) -> Result<(), EditError> {
+    fn new_shape(&self, shape: &Shape) -> Result<(), EditError> {
+        let (radius, outline) = match shape {
+            Shape::Disc { radius } => (Some(*radius), None),
+            Shape::Polygon(corners) => (None, Some(corners.iter().map(|corner| corner.to_array()).collect())),
+        };
+        let body = BodyDescription { radius, outline, size: None, ..BodyDescription::disc(1.0, [0.0; 2]) };
+        let scene = Scene { body: vec![body], ..self.small_scene() };
+        match scene.validate().0.first() {
+            Some(problem) => unfit(format!("the new shape cannot be made: {problem}")),
+            None => Ok(()),
+        }
+    }
+
+    fn new_joint(&self, joint: &JointDescription, roster: &mut Roster<'_>) -> Result<(), EditError> {
         for name in std::iter::once(&joint.body).chain(&joint.other) {
-            let entry = roster.bodies.iter().find(|entry| entry.there && entry.name == *name);
-            match entry {
-                None => return unfit(format!("there is no body \"{name}\"")),
-                Some(entry) if entry.soft => {
-                    return unfit(format!("the body \"{name}\" is particles: no joint holds it"));
-                }
-                Some(_) => {}
-            }
+            roster.holds(name, "joint")?;
         }
         // Stand-ins for the bodies, well apart.
         let far = |k: f64| [1e3 * k * self.solver.spacing(), 0.0];
@@ -151,7 +165,7 @@ impl Checker<'_> {
     }
 }
 
-impl Roster {
+impl Roster<'_> {
     /// A body that is there and has a pose of its own.
     fn rigid(&self, body: u32) -> Result<&Entry, EditError> {
         match self.bodies.get(body as usize) {
@@ -159,6 +173,15 @@ impl Roster {
             Some(entry) if entry.there => Ok(entry),
             Some(entry) => unfit(format!("the body \"{}\" was taken away", entry.name)),
             None => unfit(format!("there is no body {body}")),
+        }
+    }
+
+    /// Whether there is a body of this name that a joint or rope can hold.
+    fn holds(&self, name: &str, what: &str) -> Result<(), EditError> {
+        match self.bodies.iter().find(|entry| entry.there && entry.name == name) {
+            None => unfit(format!("there is no body \"{name}\"")),
+            Some(entry) if entry.soft => unfit(format!("the body \"{name}\" is particles: no {what} holds it")),
+            Some(_) => Ok(()),
         }
     }
 

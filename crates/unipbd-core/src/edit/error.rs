@@ -55,3 +55,7 @@ impl fmt::Display for EditError {
 }
 
 impl std::error::Error for EditError {}
+
+pub(super) fn unfit<T>(reason: impl Into<String>) -> Result<T, EditError> {
+    Err(EditError::Unfit(reason.into()))
+}

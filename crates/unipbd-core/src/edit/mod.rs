@@ -14,10 +14,14 @@ mod apply;
 mod bodies;
 mod check;
 mod check_bodies;
+mod emitters;
 mod error;
+mod ropes;
 mod world;
 
+pub use crate::coupling::RopeReading;
 pub use crate::rigid::BodyChange;
+pub use crate::sources::{EmitterChange, EmitterReading};
 pub use error::EditError;
 
 use world::WorldChange;

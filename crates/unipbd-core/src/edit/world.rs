@@ -3,7 +3,8 @@
 use super::{BodyChange, Edit, Points};
 use crate::math::Vector64;
 use crate::rigid::contact::Motor;
-use crate::scene::{BodyDescription, JointDescription};
+use crate::scene::{BodyDescription, Emitter, JointDescription, Rope};
+use crate::sources::EmitterChange;
 
 /// One change of the world.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,6 +18,12 @@ pub(super) enum WorldChange {
     AddJoint(Box<JointDescription>),
     RemoveJoint(u32),
     Motor { joint: u32, motor: Option<Motor> },
+    AddEmitter(Box<Emitter>),
+    ChangeEmitter { emitter: u32, change: EmitterChange },
+    RemoveEmitter(u32),
+    AddRope(Box<Rope>),
+    CutRope { rope: u32, piece: u32 },
+    RemoveRope(u32),
 }
 
 impl Edit {
@@ -27,8 +34,7 @@ impl Edit {
     }
 
     /// Adds a body, or rows of them, as a `[[body]]` of a scene describes it; they get the next numbers of
-    /// [`Solver::bodies`](crate::Solver::bodies). Bodies that are particles cannot be added, and where there are fluids
-    /// the scene must have a body from the start.
+    /// [`Solver::bodies`](crate::Solver::bodies). Bodies that are particles cannot be added.
     #[must_use]
     pub fn add_body(self, body: BodyDescription) -> Self {
         self.with(WorldChange::AddBody(Box::new(body)))
@@ -76,6 +82,44 @@ impl Edit {
     #[must_use]
     pub fn set_motor(self, joint: u32, motor: Option<Motor>) -> Self {
         self.with(WorldChange::Motor { joint, motor })
+    }
+
+    /// Adds an emitter, as an `[[emitter]]` of a scene describes it; `start` and `stop` are times of the run [s]. It gets
+    /// the next number of [`Solver::emitters`](crate::Solver::emitters). Leave room for three rows behind its face.
+    #[must_use]
+    pub fn add_emitter(self, emitter: Emitter) -> Self {
+        self.with(WorldChange::AddEmitter(Box::new(emitter)))
+    }
+
+    /// Changes the speed or temperature of an emitter, or switches it on or off.
+    #[must_use]
+    pub fn change_emitter(self, emitter: u32, change: EmitterChange) -> Self {
+        self.with(WorldChange::ChangeEmitter { emitter, change })
+    }
+
+    /// Takes an emitter away; the particles behind its face are let go. Its number is not given to another.
+    #[must_use]
+    pub fn remove_emitter(self, emitter: u32) -> Self {
+        self.with(WorldChange::RemoveEmitter(emitter))
+    }
+
+    /// Lays a rope, as a `[[rope]]` of a scene describes it, between the bodies where they are then: those that the same
+    /// edit adds before it too. It gets the next number of [`Solver::ropes`](crate::Solver::ropes).
+    #[must_use]
+    pub fn add_rope(self, rope: Rope) -> Self {
+        self.with(WorldChange::AddRope(Box::new(rope)))
+    }
+
+    /// Cuts a piece of a rope, between its points `piece` and `piece + 1`.
+    #[must_use]
+    pub fn cut_rope(self, rope: u32, piece: u32) -> Self {
+        self.with(WorldChange::CutRope { rope, piece })
+    }
+
+    /// Takes a rope away with its points. Its number is not given to another.
+    #[must_use]
+    pub fn remove_rope(self, rope: u32) -> Self {
+        self.with(WorldChange::RemoveRope(rope))
     }
 
     /// Fills a rectangle with particles of a material, as a `[[block]]` of a scene does, from its lower left to its upper

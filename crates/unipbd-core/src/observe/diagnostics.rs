@@ -190,11 +190,13 @@ pub enum SubstepReason {
     Support,
     /// Less would do now, but the number falls slowly.
     Hysteresis,
+    /// More would be wanted, but a frame must not take longer ([`Solver::set_budget`](crate::Solver::set_budget)).
+    Budget,
 }
 
 impl SubstepReason {
     /// All reasons.
-    pub const ALL: [SubstepReason; 8] = [
+    pub const ALL: [SubstepReason; 9] = [
         SubstepReason::Fixed,
         SubstepReason::Speed,
         SubstepReason::TrustRegion,
@@ -203,6 +205,7 @@ impl SubstepReason {
         SubstepReason::Bodies,
         SubstepReason::Support,
         SubstepReason::Hysteresis,
+        SubstepReason::Budget,
     ];
 
     /// The word for it in messages and logs.
@@ -216,6 +219,7 @@ impl SubstepReason {
             SubstepReason::Bodies => "bodies",
             SubstepReason::Support => "support",
             SubstepReason::Hysteresis => "hysteresis",
+            SubstepReason::Budget => "budget",
         }
     }
 }

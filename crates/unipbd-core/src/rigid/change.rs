@@ -15,6 +15,9 @@ const MOST_CELLS: f64 = 1e8;
 pub struct BodyChange {
     /// Whether forces, a script or nothing moves it; a body that becomes kinematic keeps its velocity.
     pub kind: Option<BodyKind>,
+    /// Outline, about the centre of mass, which stays where it is. The mass follows from the density where the body has
+    /// one, else it stays; the inertia follows from both.
+    pub shape: Option<Shape>,
     /// Mass, with the inertia in proportion [kg].
     pub mass: Option<f64>,
     /// Coulomb friction coefficient, at rest and sliding.
@@ -51,6 +54,7 @@ impl BodyChange {
     /// Makes the changes in a specification.
     fn apply(&self, spec: &mut BodySpec) {
         set(&mut spec.kind, self.kind);
+        set(&mut spec.shape, self.shape.clone());
         set(&mut spec.mass, self.mass.map(MassSpec::Mass));
         set(&mut spec.surface.static_friction, self.friction);
         set(&mut spec.surface.kinetic_friction, self.friction);
@@ -117,8 +121,13 @@ impl Bodies {
         self.refresh_view(k);
     }
 
-    /// Changes properties of a body; it goes on where it is. A sleeping body wakes at the next substep.
-    pub(crate) fn change(&mut self, id: u32, change: &BodyChange) {
+    /// Takes away what a body touches others with, until its shape is changed.
+    pub(crate) fn hollow(&mut self, id: u32) {
+        self.cores[id as usize].pieces.clear();
+    }
+
+    /// Changes properties of a body; it goes on where it is. A sleeping body wakes at the next substep. `time` is now [s].
+    pub(crate) fn change(&mut self, id: u32, change: &BodyChange, time: f64) {
         let k = id as usize;
         let velocity = self.velocities[k];
         change.apply(&mut self.specs[k]);
@@ -130,6 +139,10 @@ impl Bodies {
             _ => {}
         }
         self.find_mover(k);
+        if change.shape.is_some() {
+            // The outline has another origin: a script goes on from there.
+            self.place(id, self.poses[k], time);
+        }
         self.refresh_view(k);
     }
 

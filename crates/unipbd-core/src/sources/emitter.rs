@@ -4,6 +4,7 @@
 //! neighbourhood of the fluid in front; the first particle to cross the face is released, and a new one is added
 //! three spacings behind. (Particles released at random positions have ten times the pressure.)
 
+use super::columns::{Column, columns};
 use super::injector::RegionInjector;
 use crate::math::{Real, Vector, Vector64, real, vector, wide};
 use crate::neighbors::Neighbors;
@@ -11,7 +12,7 @@ use crate::particles::{NewParticle, Particles};
 use crate::phase::{MaterialIndex, Phase};
 use crate::rng::Rng;
 use crate::rows::RowIndex;
-use crate::scene::{Emitter, Profile, Scene};
+use crate::scene::{Emitter, Scene};
 
 use super::saved::{ColumnState, EmitterState, ROWS_BEHIND};
 
@@ -24,22 +25,22 @@ const WAY_TO_OPEN: f64 = 8.0;
 
 /// All emitters of a scene.
 pub struct EmitterSystem {
-    emitters: Vec<Nozzle>,
-    injectors: Vec<RegionInjector>,
+    pub(super) emitters: Vec<Nozzle>,
+    pub(super) injectors: Vec<RegionInjector>,
 }
 
-struct Nozzle {
+pub(super) struct Nozzle {
+    /// What it is, with all changes since the start.
+    pub description: Emitter,
+    /// Whether it was taken away; its number is not given to another.
+    pub removed: bool,
     position: Vector64,
     direction: Vector64,
     spacing: f64,
-    jitter: f64,
-    start: f64,
-    stop: f64,
-    throttled: bool,
     carrier: Carrier,
     smoke: Option<Markers>,
-    columns: Vec<Column>,
-    state: EmitterState,
+    pub columns: Vec<Column>,
+    pub state: EmitterState,
 }
 
 struct Carrier {
@@ -51,17 +52,6 @@ struct Carrier {
 struct Markers {
     material: MaterialIndex,
     per_particle: u32,
-}
-
-/// One column of the face.
-struct Column {
-    /// Distance from the middle of the face [m].
-    offset: f64,
-    /// Distance of its particles [m].
-    row: f64,
-    speed: f64,
-    temperature: Real,
-    core: bool,
 }
 
 impl EmitterSystem {
@@ -111,32 +101,10 @@ impl EmitterSystem {
     pub fn columns(&self) -> impl Iterator<Item = usize> {
         self.emitters.iter().map(|nozzle| nozzle.columns.len())
     }
-
-    /// The variable state of the emitters as words: part of a saved state.
-    pub fn save(&self) -> Vec<u64> {
-        self.emitters.iter().flat_map(|nozzle| nozzle.state.words()).collect()
-    }
-
-    /// Whether [`restore`](Self::restore) accepts these words.
-    pub fn accepts(&self, words: &[u64]) -> bool {
-        let mut words = words.iter().copied();
-        let read = |columns| EmitterState::from_words(&mut words, columns).is_some();
-        self.columns().all(read) && words.next().is_none()
-    }
-
-    /// Restores the state written by [`save`](Self::save).
-    pub fn restore(&mut self, words: &[u64]) {
-        let mut words = words.iter().copied();
-        for nozzle in &mut self.emitters {
-            if let Some(state) = EmitterState::from_words(&mut words, nozzle.columns.len()) {
-                nozzle.state = state;
-            }
-        }
-    }
 }
 
 impl Nozzle {
-    fn new(emitter: &Emitter, scene: &Scene, rng: Rng) -> Self {
+    pub fn new(emitter: &Emitter, scene: &Scene, rng: Rng) -> Self {
         let spacing = scene.spacing;
         let index = |name: &str| scene.material(name).map_or(0, |(index, _)| index as MaterialIndex);
         let carrier = scene.material(&emitter.material).map_or_else(
@@ -154,13 +122,11 @@ impl Nozzle {
             per_particle: smoke.per_particle,
         };
         Nozzle {
+            description: emitter.clone(),
+            removed: false,
             position: emitter.position.into(),
             direction: Vector64::from(emitter.direction).normalize_or(Vector64::Y),
             spacing,
-            jitter: emitter.jitter,
-            start: emitter.start,
-            stop: emitter.stop.unwrap_or(f64::INFINITY),
-            throttled: emitter.throttle,
             carrier,
             smoke: emitter.smoke.as_ref().map(markers),
             state: EmitterState {
@@ -173,8 +139,9 @@ impl Nozzle {
         }
     }
 
-    fn is_active(&self, time: f64) -> bool {
-        time >= self.start && time < self.stop
+    pub fn is_active(&self, time: f64) -> bool {
+        let Emitter { start, stop, .. } = self.description;
+        !self.removed && time >= start && stop.is_none_or(|stop| time < stop)
     }
 
     fn will_change(&self, time: f64, dt: f64) -> bool {
@@ -196,7 +163,7 @@ impl Nozzle {
             return;
         }
         // After a removal of particles the rows of the list are invalid: the throttle stays unchanged.
-        if self.throttled && neighbors.is_current() {
+        if self.description.throttle && neighbors.is_current() {
             self.feel(dt, particles, neighbors);
         }
         for index in 0..self.columns.len() {
@@ -215,7 +182,7 @@ impl Nozzle {
     }
 
     /// Releases all particles behind the face.
-    fn close(&mut self, particles: &mut Particles, rows: &RowIndex) {
+    pub fn close(&mut self, particles: &mut Particles, rows: &RowIndex) {
         self.state.running = false;
         for column in &self.state.columns {
             for row in column.behind.iter().filter_map(|&id| rows.row(id)) {
@@ -264,7 +231,7 @@ impl Nozzle {
     fn add_behind(&mut self, index: usize, distance: f64, particles: &mut Particles) -> u32 {
         let column = &self.columns[index];
         let (offset, row, speed, temperature) = (column.offset, column.row, column.speed, column.temperature);
-        let shift = self.random_vector() * self.jitter;
+        let shift = self.random_vector() * self.description.jitter;
         let place =
             self.position + self.direction.perp() * offset - self.direction * (distance * row) + shift * self.spacing;
         particles.push(NewParticle {
@@ -341,43 +308,5 @@ fn row_of(id: u32, particles: &Particles, rows: &RowIndex) -> Option<usize> {
     match rows.row(id) {
         Some(row) => Some(row as usize),
         None => particles.id.iter().rposition(|&other| other == id),
-    }
-}
-
-/// The columns of a face, symmetric about the middle, the sheath outside the core.
-fn columns(emitter: &Emitter, spacing: f64) -> Vec<Column> {
-    let (core, apart) = emitter.columns(spacing);
-    let (sheath, apart_in_sheath) = emitter.sheath_columns(spacing);
-    let half = 0.5 * core as f64 * apart;
-    let row = |apart: f64| if apart == spacing { spacing } else { spacing * spacing / apart };
-    let in_core = (0..core).map(|index| {
-        let offset = (index as f64 + 0.5) * apart - half;
-        Column {
-            offset,
-            row: row(apart),
-            speed: emitter.speed * emitter.profile.factor(offset / half),
-            temperature: real(emitter.temperature),
-            core: true,
-        }
-    });
-    let outside = |side: f64, index: usize| Column {
-        offset: side * (half + (index as f64 + 0.5) * apart_in_sheath),
-        row: row(apart_in_sheath),
-        speed: emitter.sheath_speed(),
-        temperature: real(emitter.sheath.as_ref().map_or(0.0, |sheath| sheath.temperature)),
-        core: false,
-    };
-    let left = (0..sheath).rev().map(|index| outside(-1.0, index));
-    let right = (0..sheath).map(|index| outside(1.0, index));
-    left.chain(in_core).chain(right).collect()
-}
-
-impl Profile {
-    /// Fraction of the speed at a position across the face, -1 to 1.
-    fn factor(self, across: f64) -> f64 {
-        match self {
-            Profile::Uniform => 1.0,
-            Profile::Parabolic => 1.0 - 0.5 * across * across,
-        }
     }
 }

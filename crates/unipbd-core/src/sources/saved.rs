@@ -1,5 +1,61 @@
 //! The variable state of an emitter: part of a saved state.
 
+use crate::scene::{Emitter, Profile, Sheath, SmokeSource};
+
+/// The description of an emitter with every field, as formats without field names need it, and whether it was taken away.
+#[derive(serde::Serialize, serde::Deserialize)]
+pub(super) struct SavedEmitter {
+    names: (String, String),
+    place: ([f64; 2], [f64; 2], f64),
+    flow: (f64, Profile, f64, f64),
+    schedule: (f64, Option<f64>, bool),
+    sheath: Option<(f64, Option<f64>, f64)>,
+    smoke: Option<(String, u32)>,
+    removed: bool,
+}
+
+impl SavedEmitter {
+    pub fn of(emitter: &Emitter, removed: bool) -> Self {
+        let Emitter { name, material, position, direction, width, speed, profile, temperature, .. } = emitter.clone();
+        let Emitter { jitter, start, stop, throttle, sheath, smoke, .. } = emitter.clone();
+        SavedEmitter {
+            names: (name, material),
+            place: (position, direction, width),
+            flow: (speed, profile, temperature, jitter),
+            schedule: (start, stop, throttle),
+            sheath: sheath.map(|sheath| (sheath.thickness, sheath.speed, sheath.temperature)),
+            smoke: smoke.map(|smoke| (smoke.material, smoke.per_particle)),
+            removed,
+        }
+    }
+
+    pub fn emitter(self) -> (Emitter, bool) {
+        let (name, material) = self.names;
+        let (position, direction, width) = self.place;
+        let (speed, profile, temperature, jitter) = self.flow;
+        let (start, stop, throttle) = self.schedule;
+        let sheath = self.sheath.map(|(thickness, speed, temperature)| Sheath { thickness, speed, temperature });
+        let smoke = self.smoke.map(|(material, per_particle)| SmokeSource { material, per_particle });
+        let emitter = Emitter {
+            name,
+            material,
+            position,
+            direction,
+            width,
+            speed,
+            profile,
+            temperature,
+            jitter,
+            start,
+            stop,
+            throttle,
+            sheath,
+            smoke,
+        };
+        (emitter, self.removed)
+    }
+}
+
 /// Particles kept behind the face in each column.
 pub(super) const ROWS_BEHIND: usize = 3;
 

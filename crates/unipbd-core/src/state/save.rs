@@ -1,14 +1,17 @@
 use super::error::damaged;
 use super::structure::structure;
 use super::{Section, State, StateError, bodies};
-use crate::coupling::RigidBodies;
+use crate::coupling::{RigidBodies, Ropes};
 use crate::math::{Vector, Vector64, real, wide};
+use crate::observe::Material;
 use crate::scene::crowd;
-use crate::step::{Clock, Solver};
+use crate::sources::{EmitterSystem, RestoredEmitter};
+use crate::step::{Clock, FluidParts, Solver};
 
 const EMITTERS: &str = "emitters";
 const SMOKE: &str = "smoke";
 const BODIES: &str = "bodies";
+const ROPES: &str = "ropes";
 const GRAVITY: &str = "gravity";
 
 /// Farthest place that a state may hold [spacings]: a run that gets there has long been of no use.
@@ -51,6 +54,9 @@ impl Solver {
         if let Some(rigid) = &parts.rigid {
             section(BODIES, bodies::to_words(rigid));
         }
+        if parts.ropes.len() > 0 {
+            section(ROPES, bodies::to_words(&parts.ropes));
+        }
         let gravity = parts.exact_gravity;
         section(GRAVITY, vec![gravity.x.to_bits(), gravity.y.to_bits()]);
         for group in &parts.groups {
@@ -74,23 +80,43 @@ impl Solver {
     /// [`StateError::OtherScene`] if the state is of a scene that is built differently; the run
     /// is not changed in that case.
     pub fn restore(&mut self, state: &State) -> Result<(), StateError> {
-        self.accept(state)?;
+        self.accept_structure(state)?;
+        let fluids = self.fluids_of(state);
         let rigid = self.saved_bodies(state)?;
+        let ropes = self.saved_ropes(state, rigid.as_ref())?;
+        self.accept(state, fluids.as_ref(), &ropes)?;
+        let emitters = self.saved_emitters(state)?;
         let generation = self.world.clock.generation;
         let world = &mut self.world;
+        if let Some(fluids) = fluids {
+            world.set_fluid_parts(fluids);
+        }
         let mut sections = state.sections.iter();
         let mut next = || sections.next().map_or(&[][..], |section| &section.words);
-        if let Some(emitters) = &mut world.parts.emitters {
-            emitters.restore(next());
-        }
+        let replanned = emitters.is_some() != world.parts.emitters.is_some();
+        world.parts.emitters = match emitters {
+            None => None,
+            Some(saved) => {
+                next();
+                let mut system = world.parts.emitters.take().unwrap_or_else(EmitterSystem::none);
+                system.restore(saved);
+                Some(system)
+            }
+        };
         if let Some(smoke) = &mut world.parts.smoke {
             smoke.set_last_dt(real(next().first().copied().map_or(0.0, f64::from_bits)));
         }
         if rigid.is_some() {
             next();
         }
-        let replanned = rigid.is_some() || world.parts.rigid.is_some();
+        if ropes.len() > 0 {
+            next();
+        }
+        let replanned = replanned || ropes != world.parts.ropes || rigid.is_some() || world.parts.rigid.is_some();
         world.parts.rigid = rigid;
+        if ropes != world.parts.ropes {
+            world.set_ropes(ropes);
+        }
         if let Some(gravity) = gravity_of(next()).filter(|gravity| *gravity != world.parts.exact_gravity) {
             world.set_gravity(gravity);
         }
@@ -120,8 +146,40 @@ impl Solver {
         bodies::from_words(&section.words, running, parts.spacing).map(Some)
     }
 
-    /// Whether the state belongs to a run like this one.
-    fn accept(&self, state: &State) -> Result<(), StateError> {
+    /// The ropes of a state, with these bodies.
+    fn saved_ropes(&self, state: &State, rigid: Option<&RigidBodies>) -> Result<Ropes, StateError> {
+        let of_scene = self.world.parts.scene_ropes;
+        let ropes: Ropes = match state.sections.iter().find(|section| section.name == ROPES) {
+            Some(section) => bodies::read_words(&section.words, ROPES)?,
+            None => Ropes::default(),
+        };
+        let joints = rigid.map_or(0, |rigid| rigid.contacts.joint_count());
+        if !ropes.are_sound(of_scene, state.particles.ids_given(), joints) {
+            return Err(damaged("its ropes make no sense"));
+        }
+        Ok(ropes)
+    }
+
+    /// The emitters of a state, if it has any.
+    fn saved_emitters(&self, state: &State) -> Result<Option<Vec<RestoredEmitter>>, StateError> {
+        let parts = &self.world.parts;
+        let of_scene = parts.scene_emitters.as_deref();
+        let Some(section) = state.sections.iter().find(|section| section.name == EMITTERS) else {
+            return if of_scene.is_none() { Ok(None) } else { Err(damaged("its emitters are missing")) };
+        };
+        let saved = EmitterSystem::at_saved(&section.words, &parts.kit, of_scene.unwrap_or_default());
+        saved.map(Some).ok_or_else(|| damaged("its emitters make no sense"))
+    }
+
+    /// The parts of fluids that meet bodies, or do not, as in the state; `None` if the run has those.
+    fn fluids_of(&self, state: &State) -> Option<FluidParts> {
+        let with_bodies = has_bodies(state);
+        let remake = self.world.parts.remake.as_ref()?;
+        (self.world.parts.sample_material.is_some() != with_bodies).then(|| remake(with_bodies))
+    }
+
+    /// Whether the state is of a scene that is built like this one.
+    fn accept_structure(&self, state: &State) -> Result<(), StateError> {
         let running = structure(self);
         for (index, running) in running.iter().enumerate() {
             let saved = state.structure.get(index).map_or("nothing", |line| line);
@@ -129,29 +187,34 @@ impl Solver {
                 return Err(StateError::OtherScene { saved: saved.to_owned(), running: running.clone() });
             }
         }
-        self.accept_sections(state)?;
+        Ok(())
+    }
+
+    /// Whether the state belongs to a run like this one, with these parts of its fluids and these ropes.
+    fn accept(&self, state: &State, fluids: Option<&FluidParts>, ropes: &Ropes) -> Result<(), StateError> {
+        self.accept_sections(state, ropes)?;
         self.accept_clock(state)?;
-        self.accept_particles(state)?;
+        let materials = fluids.map_or(&self.world.parts.materials, |fluids| &fluids.materials);
+        self.accept_particles(state, materials)?;
         // A run that has diverged goes back to where it was.
         if state.read { self.accept_places(state) } else { Ok(()) }
     }
 
-    fn accept_sections(&self, state: &State) -> Result<(), StateError> {
+    fn accept_sections(&self, state: &State, ropes: &Ropes) -> Result<(), StateError> {
         let parts = &self.world.parts;
-        let names = parts.emitters.iter().map(|_| EMITTERS).chain(parts.smoke.iter().map(|_| SMOKE));
-        let with_bodies = state.sections.iter().any(|section| section.name == BODIES);
+        let with_emitters = state.sections.iter().any(|section| section.name == EMITTERS);
+        let names = with_emitters.then_some(EMITTERS).into_iter().chain(parts.smoke.iter().map(|_| SMOKE));
+        let with_bodies = has_bodies(state);
         if !with_bodies && parts.scene_bodies > 0 {
             return Err(damaged("its bodies are missing"));
         }
-        let names = names.chain(with_bodies.then_some(BODIES)).chain([GRAVITY]);
-        let names = names.chain(parts.groups.iter().map(|group| group.name()));
+        let names =
+            names.chain(with_bodies.then_some(BODIES)).chain((ropes.len() > 0).then_some(ROPES)).chain([GRAVITY]);
+        let (before, behind) = (&parts.groups[..parts.rope_groups.start], &parts.groups[parts.rope_groups.end..]);
+        let of_ropes = ropes.groups();
+        let names = names.chain(before.iter().chain(&of_ropes).chain(behind).map(|group| group.name()));
         if !names.eq(state.sections.iter().map(|section| &section.name[..])) {
             return Err(damaged("it lacks a part of the run"));
-        }
-        if let Some(emitters) = &parts.emitters
-            && state.sections.first().is_none_or(|section| !emitters.accepts(&section.words))
-        {
-            return Err(damaged("its emitters make no sense"));
         }
         let gravity = state.sections.iter().find(|section| section.name == GRAVITY);
         if gravity.is_none_or(|section| gravity_of(&section.words).is_none()) {
@@ -173,9 +236,9 @@ impl Solver {
         if whole && begun { Ok(()) } else { Err(damaged("its substeps are not those of a frame of the run")) }
     }
 
-    fn accept_particles(&self, state: &State) -> Result<(), StateError> {
+    fn accept_particles(&self, state: &State, materials: &[Material]) -> Result<(), StateError> {
         let parts = &self.world.parts;
-        let (materials, particles) = (&parts.materials, &state.particles);
+        let particles = &state.particles;
         let known = |row: usize| materials.get(usize::from(particles.material[row])).map(|material| material.phase);
         if (0..particles.len()).any(|row| known(row) != Some(particles.phase[row])) {
             return Err(damaged("a particle is of no material of the scene"));
@@ -212,6 +275,10 @@ impl Solver {
         }
         Ok(())
     }
+}
+
+fn has_bodies(state: &State) -> bool {
+    state.sections.iter().any(|section| section.name == BODIES)
 }
 
 /// Gravity from its section [m/s^2]; `None` if it is not finite in single precision.

@@ -1,6 +1,7 @@
 //! The properties that a state and the restored run must share, as text for error messages.
 
 use crate::math::Real;
+use crate::phase::Phase;
 use crate::step::Solver;
 
 /// One line per fact; two runs with the same lines can exchange their states.
@@ -12,19 +13,23 @@ pub(super) fn structure(solver: &Solver) -> Vec<String> {
         format!("spacing {} m", parts.spacing),
         format!("frames of {} s", parts.frame_time),
         format!("seed {}", parts.seed),
-        format!("{} materials", parts.materials.len()),
     ];
+    // Samples of bodies come with the first body.
+    let materials = || parts.materials.iter().filter(|material| material.phase != Phase::Rigid);
+    lines.push(format!("{} materials", materials().count()));
     let material = |material: &crate::observe::Material| {
         format!("a {} \"{}\" of density {}", material.phase.name(), material.name, material.density)
     };
-    lines.extend(parts.materials.iter().map(material));
+    lines.extend(materials().map(material));
     lines.push(format!("{} temperatures", if optional.temperature { "particles with" } else { "no" }));
     lines.push(format!("{} ages", if optional.age { "particles with" } else { "no" }));
     lines.push(format!("liquids that {}sleep", if optional.rest { "" } else { "do not " }));
-    let emitters = parts.emitters.as_ref().map_or_else(Vec::new, |emitters| emitters.columns().collect());
+    let emitters = parts.scene_emitters.as_deref().unwrap_or_default();
     lines.push(format!("{} emitters with {emitters:?} columns", emitters.len()));
     lines.push(format!("bodies and joints of the scene, mark {:x}", parts.scene_mark));
-    lines.push(format!("{} constraint groups", parts.groups.len()));
-    lines.extend(parts.groups.iter().map(|group| format!("a constraint group \"{}\"", group.name())));
+    lines.push(format!("{} ropes", parts.scene_ropes));
+    let (before, behind) = (&parts.groups[..parts.rope_groups.start], &parts.groups[parts.rope_groups.end..]);
+    lines.push(format!("{} constraint groups", before.len() + behind.len()));
+    lines.extend(before.iter().chain(behind).map(|group| format!("a constraint group \"{}\"", group.name())));
     lines
 }

@@ -9,6 +9,7 @@ use crate::math::Real;
 use crate::observe::{Event, GaugeReading, WallForce, WallOutline};
 use crate::phase::{MaterialIndex, Phase};
 use crate::pressure_grid::PressureGrid;
+use crate::sources::EmitterReading;
 
 /// Read access common to a solver and the view of its substep.
 macro_rules! shared_access {
@@ -62,6 +63,11 @@ pub(super) use shared_access;
 shared_access!(Solver);
 
 impl Solver {
+    /// The emitters, in the order in which they came; those that were taken away too.
+    pub fn emitters(&self) -> Vec<EmitterReading> {
+        self.world.parts.emitters.as_ref().map_or_else(Vec::new, |emitters| emitters.readings())
+    }
+
     /// Frames done.
     pub fn frame(&self) -> u64 {
         self.world.clock.frame

@@ -6,7 +6,7 @@
 use super::watched::{Errors, Watched};
 use super::world::World;
 use crate::math::{real, wide};
-use crate::observe::{Event, Severity};
+use crate::observe::{Event, Severity, SubstepReason};
 use crate::phase::Phase;
 
 /// Mean |C| of a material from which on a run is no longer to be trusted.
@@ -81,6 +81,9 @@ impl World {
         }
         if errors.sum < 0.0 {
             return "its particles are farther apart than at rest, as where it flows out or is stirred".to_owned();
+        }
+        if self.choice.reason == SubstepReason::Budget {
+            return "the budget of a frame allows fewer substeps than it wants".to_owned();
         }
         if wanted > self.clock.substeps {
             let taken = self.clock.substeps;

@@ -3,9 +3,10 @@
 //! Each projection starts with a fraction of the last displacement, if the push has the same direction (momentum
 //! method). Relaxation of a deep liquid then takes a number of projections linear in the layers, not quadratic.
 
+use super::clock::Clock;
 use super::integrate;
 use super::pipeline::Stage;
-use super::world::{Clock, World};
+use super::world::World;
 use crate::math::{Real, Vector, larger};
 use crate::parallel::Parallelism;
 use crate::particles::{Particles, displaced};

@@ -16,7 +16,12 @@ impl World {
     /// Whether all movable rows sleep: then the next frame is equal to the last.
     pub(super) fn sleeps(&self) -> bool {
         let particles = &self.parts.particles;
-        particles.asleep() > 0 && particles.asleep() == particles.len() && self.parts.emitters.is_none()
+        particles.asleep() > 0 && particles.asleep() == particles.len() && !self.emits()
+    }
+
+    /// Whether there are emitters or injectors.
+    pub fn emits(&self) -> bool {
+        self.parts.emitters.as_ref().is_some_and(|emitters| !emitters.is_over())
     }
 
     /// Wakes the sleeping rows around some points.

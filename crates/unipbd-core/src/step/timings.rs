@@ -33,29 +33,29 @@ impl Timings {
 }
 
 /// Measures from its start. A bare WebAssembly module has no clock: there all times are zero.
-struct Stopwatch {
+pub(super) struct Stopwatch {
     #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
     begin: Instant,
 }
 
 impl Stopwatch {
     #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
-    fn start() -> Self {
+    pub fn start() -> Self {
         Stopwatch { begin: Instant::now() }
     }
 
     #[cfg(not(all(target_family = "wasm", target_os = "unknown")))]
-    fn elapsed(&self) -> Duration {
+    pub fn elapsed(&self) -> Duration {
         self.begin.elapsed()
     }
 
     #[cfg(all(target_family = "wasm", target_os = "unknown"))]
-    fn start() -> Self {
+    pub fn start() -> Self {
         Stopwatch {}
     }
 
     #[cfg(all(target_family = "wasm", target_os = "unknown"))]
-    fn elapsed(&self) -> Duration {
+    pub fn elapsed(&self) -> Duration {
         Duration::ZERO
     }
 }

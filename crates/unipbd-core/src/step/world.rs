@@ -1,7 +1,11 @@
 //! The complete state of a run, and the frame loop.
 
+use std::ops::Range;
 use std::sync::OnceLock;
 
+use super::budget::Budget;
+use super::clock::Clock;
+use super::fluid_parts::Remake;
 use super::integrate::BodyForce;
 use super::pipeline::{Features, Plan};
 use super::substeps::{Choice, SubstepRule};
@@ -9,7 +13,7 @@ use super::timings::Timings;
 use super::watched::{Errors, Watched};
 use super::{FrameReport, SolverError, Stage};
 use crate::constraints::{ConstraintGroup, CorrectionParts, Corrections, Needs, Substep};
-use crate::coupling::RigidBodies;
+use crate::coupling::{RigidBodies, Ropes};
 use crate::effects::{Changes, Effect, SmokeAdvection};
 use crate::math::{Real, Vector, Vector64};
 use crate::neighbors::{Neighbors, SavedList, SearchPositions};
@@ -20,7 +24,7 @@ use crate::phase::MaterialIndex;
 use crate::pressure_grid::PressureGrid;
 use crate::rigid::{Wall, Waypoint};
 use crate::rows::RowIndex;
-use crate::scene::Gauge;
+use crate::scene::{Gauge, Scene};
 use crate::sleep::LiquidSleep;
 use crate::sources::{EmitterSystem, RemovalRules};
 use crate::walls::{Outlines, Walls};
@@ -40,10 +44,19 @@ pub(crate) struct Parts {
     pub search_positions: SearchPositions,
     pub pressure_grid: Option<PressureGrid>,
     pub groups: Vec<Box<dyn ConstraintGroup>>,
+    /// Those of ropes among the groups.
+    pub rope_groups: Range<usize>,
+    pub ropes: Ropes,
+    /// Number of ropes of the scene: the first.
+    pub scene_ropes: usize,
     pub effects: Vec<Box<dyn Effect>>,
     pub smoke: Option<SmokeAdvection>,
     pub rigid: Option<RigidBodies>,
     pub emitters: Option<EmitterSystem>,
+    /// Columns of each emitter of the scene; `None` where it has neither emitters nor injectors.
+    pub scene_emitters: Option<Vec<usize>>,
+    /// Materials and settings of the scene alone: what new emitters and ropes are made of.
+    pub kit: Scene,
     pub removal: Option<RemovalRules>,
     pub sleep: Option<LiquidSleep>,
     pub substeps: SubstepRule,
@@ -69,52 +82,12 @@ pub(crate) struct Parts {
     pub sample_material: Option<MaterialIndex>,
     /// What is read in each frame, in the order of the scene.
     pub gauges: Vec<Gauge>,
+    /// Makes what fluids know of bodies, in a scene of fluids that began without bodies.
+    pub remake: Option<Remake>,
     pub spacing: f64,
     pub frame_time: f64,
     pub seed: u64,
     pub parallelism: Parallelism,
-}
-
-/// Clock of a run.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Clock {
-    pub frame: u64,
-    pub step: u64,
-    pub time: f64,
-    /// Length of the last substep [s].
-    pub dt: f64,
-    pub substeps: u32,
-    /// Substeps done of a frame that was interrupted by an error.
-    pub done: u32,
-    pub list_builds: u32,
-    /// Limit of the pressure over density of a fluid [m^2/s^2].
-    pub pressure_limit: f64,
-    /// Fraction of the full stiffness of the fluids.
-    pub stiffness: f64,
-    /// Whether the start of the run is being settled.
-    pub settling: bool,
-    /// Whether the last frame took fewer substeps than demanded.
-    pub capped: bool,
-    /// Fastest dense particle after the last substep [m/s].
-    pub speed: f64,
-    /// Acceleration by hooks in the last substep.
-    pub push: Push,
-    /// Advances whenever particles are added or removed.
-    pub generation: u64,
-}
-
-/// Acceleration of the fluids by hooks: its mean, and the root mean square of the rest [m/s^2].
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Push {
-    pub mean: Vector64,
-    pub spread: f64,
-}
-
-impl Push {
-    /// The root mean square of the whole [m/s^2].
-    pub fn size(&self) -> f64 {
-        libm::hypot(self.mean.length(), self.spread)
-    }
 }
 
 /// State at the start of a frame.
@@ -148,6 +121,7 @@ pub(crate) struct World {
     pub(super) plan: Plan,
     pub events: Vec<Event>,
     pub timings: Timings,
+    pub(super) budget: Budget,
     pub(super) measured: Measured,
     pub(super) corrections: Corrections,
     pub(super) changes: Changes,
@@ -186,6 +160,7 @@ impl World {
             plan: Plan::default(),
             events: Vec::new(),
             timings: Timings::default(),
+            budget: Budget::default(),
             measured: Measured::default(),
             watched: Vec::new(),
             material_errors: Vec::new(),
@@ -226,7 +201,7 @@ impl World {
         let measured_walls = parts.walls.measured().len();
         self.plan = Plan::new(Features {
             removal: parts.removal.is_some(),
-            emitters: parts.emitters.is_some(),
+            emitters: self.emits(),
             pressure_grid: parts.pressure_grid.is_some(),
             bodies: parts.rigid.is_some(),
             samples: parts.rigid.as_ref().is_some_and(RigidBodies::has_followers),
@@ -246,7 +221,7 @@ impl World {
             walls: measured_walls,
             outlines: parts.outlines.len(),
         });
-        self.needs_rows = parts.emitters.is_some() || parts.rigid.is_some() || needs.contains(Needs::ROWS);
+        self.needs_rows = self.emits() || parts.rigid.is_some() || needs.contains(Needs::ROWS);
         self.index_rows();
     }
 
@@ -281,6 +256,7 @@ impl World {
         self.measured = Measured::default();
         self.removed.clear();
         if self.clock.done == 0 {
+            self.budget.begin_frame();
             (self.iterated, self.stepped) = (0, 0);
             self.parts.rigid.iter_mut().for_each(|rigid| rigid.bodies.begin_frame());
             self.shake(self.clock.time);
@@ -293,6 +269,7 @@ impl World {
                 self.clock.dt = self.parts.frame_time / f64::from(self.clock.substeps);
                 self.keep_pressure_asleep(before);
             }
+            self.budget.begin_substeps();
         }
         Ok(Begun {
             removed: self.removed.len() as u64,
@@ -333,6 +310,7 @@ impl World {
         self.run_all(|plan| &plan.end)?;
         self.check_finite()?;
         self.watch_density();
+        self.budget.end_frame(self.clock.substeps);
         let inverse = 1.0 / self.parts.frame_time;
         self.wall_forces = self.wall_impulses.iter().map(|impulse| *impulse * inverse).collect();
         self.loads_known = true;

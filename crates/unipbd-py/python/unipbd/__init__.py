@@ -45,7 +45,7 @@ from ._scene import Scene
 from ._simulation import Simulation
 from ._state import State
 from ._substep import Projection, Substep, SubstepBody
-from ._world import Contact, ContactEvent, ContactPair, Joint, Nearest, RayHit
+from ._world import Contact, ContactEvent, ContactPair, Emitter, Joint, Nearest, RayHit, Rope
 from ._tables import Table, Tables
 
 __all__ = [
@@ -64,6 +64,7 @@ __all__ = [
     "ContactPair",
     "Edit",
     "EditError",
+    "Emitter",
     "Frame",
     "Gradient",
     "Joint",
@@ -76,6 +77,7 @@ __all__ = [
     "RayHit",
     "Recording",
     "RecordingError",
+    "Rope",
     "Scene",
     "SceneError",
     "SceneProblem",

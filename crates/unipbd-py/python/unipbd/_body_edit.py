@@ -24,6 +24,9 @@ _PROPERTIES = (
     "collides_with",
     "collision_group",
     "user_data",
+    "radius",
+    "size",
+    "outline",
 )
 
 
@@ -95,7 +98,9 @@ class BodyEdit:
     def set(self, **values: Any) -> None:
         """Changes properties: ``kind``, ``mass`` [kg], ``friction``, ``rolling_friction``, ``restitution``,
         ``surface_speed`` [m/s], ``gravity_factor``, ``linear_damping``, ``angular_damping`` [1/s], ``layers``,
-        ``collides_with``, ``collision_group``, ``user_data``."""
+        ``collides_with``, ``collision_group``, ``user_data``; or its shape, by one of ``radius``, ``size`` and
+        ``outline`` [m], about the centre of mass, which stays: the mass follows from the density where the body has
+        one, the inertia from both."""
         for key in values:
             if key not in _PROPERTIES:
                 raise EditError(f"a body has no {key!r} to change; there are {', '.join(_PROPERTIES)}")

@@ -82,13 +82,13 @@ class Column:
 
 
 class Edit:
-    """Changes of particles, bodies, joints and gravity, made together when the `with` block ends. See
+    """Changes of particles, bodies, joints, emitters, ropes and gravity, made together when the `with` block ends. See
     `Simulation.edit`.
 
     Where anything is wrong - an unknown id, a wrong shape, a number that is not finite - an
     `EditError` is raised and nothing has changed; an exception within the block leaves everything
-    as it was, too. Values are set first, then particles are removed, then new ones added, then bodies
-    and joints change in the order of the calls.
+    as it was, too. Values are set first, then particles are removed, then new ones added, then bodies,
+    joints, emitters and ropes change in the order of the calls.
     """
 
     def __init__(self, simulation: Simulation) -> None:
@@ -199,10 +199,8 @@ class Edit:
 
     def add_body(self, name: str, at: npt.ArrayLike, **values: Any) -> None:
         """Adds a rigid body at `at` [m]; the keys are those of ``[[body]]`` in a scene file: one of ``radius``,
-        ``size`` and ``outline``, and ``density``, ``velocity``, ``kind`` and so on.
-
-        Where there are fluids the scene must have a body from the start.
-        """
+        ``size`` and ``outline``, and ``density``, ``velocity``, ``kind`` and so on. The scene may have had no body so
+        far."""
         body = {"name": name, "position": pair(at, "at", EditError), **values}
         self._world.append({"change": "add_body", "body": plain(body)})
 
@@ -238,6 +236,69 @@ class Edit:
             if known.name == joint and not known.removed:
                 return number
         raise EditError(f"there is no joint {joint!r}")
+
+    # -- emitters, ropes -----------------------------------------------------------------------
+
+    def add_emitter(
+        self,
+        material: str,
+        position: npt.ArrayLike,
+        width: float,
+        speed: float,
+        direction: npt.ArrayLike = (0.0, 1.0),
+        **values: Any,
+    ) -> None:
+        """Adds a nozzle of this width [m] that pushes a material out at this speed [m/s]; the keys are those of
+        ``[[emitter]]`` in a scene file, ``name`` among them; ``start`` and ``stop`` are times of the run [s]. Leave room
+        for three rows of particles behind its face."""
+        emitter = {
+            "material": material,
+            "position": pair(position, "position", EditError),
+            "width": float(width),
+            "speed": float(speed),
+            "direction": pair(direction, "direction", EditError),
+            **values,
+        }
+        self._world.append({"change": "add_emitter", "emitter": plain(emitter)})
+
+    def change_emitter(
+        self,
+        emitter: str | int,
+        speed: float | None = None,
+        temperature: float | None = None,
+        on: bool | None = None,
+    ) -> None:
+        """Changes the speed [m/s] or temperature of an emitter, or switches it on or off from now on. It is named by its
+        name or by its place in `Simulation.emitters`."""
+        values = {"speed": speed, "temperature": temperature, "on": on}
+        self._world.append({"change": "change_emitter", "emitter": self._emitter(emitter), **plain(values)})
+
+    def remove_emitter(self, emitter: str | int) -> None:
+        """Takes an emitter away; the particles behind its face are let go."""
+        self._world.append({"change": "remove_emitter", "emitter": self._emitter(emitter)})
+
+    def add_rope(self, material: str, start: npt.ArrayLike, end: npt.ArrayLike, **values: Any) -> None:
+        """Lays a rope of points of a solid (or liquid) from `start` to `end` [m]; the keys are those of ``[[rope]]`` in a
+        scene file: ``length``, ``held``, ``body``, ``from_body``, ``compliance`` and so on. Bodies that this edit adds
+        before can be named."""
+        ends = {"from": pair(start, "start", EditError), "to": pair(end, "end", EditError)}
+        self._world.append({"change": "add_rope", "rope": plain({"material": material, **ends, **values})})
+
+    def cut_rope(self, rope: int, piece: int) -> None:
+        """Cuts a rope, named by its place in `Simulation.ropes`, between its points `piece` and ``piece + 1``."""
+        self._world.append({"change": "cut_rope", "rope": int(rope), "piece": int(piece)})
+
+    def remove_rope(self, rope: int) -> None:
+        """Takes a rope away with its points; its place in `Simulation.ropes` is not given to another."""
+        self._world.append({"change": "remove_rope", "rope": int(rope)})
+
+    def _emitter(self, emitter: str | int) -> int:
+        if not isinstance(emitter, str):
+            return int(emitter)
+        for number, known in enumerate(self._simulation.emitters):
+            if known.name == emitter and not known.removed:
+                return number
+        raise EditError(f"there is no emitter {emitter!r}")
 
     def script(self, which: Any) -> None:
         """From now on only their velocity moves these particles, and nothing but you changes it."""

@@ -152,10 +152,25 @@ class Simulation(Drawable):
         self._native.add_group(name, _project(project))
         self._groups.append((name, project))
 
+    @property
+    def budget(self) -> float | None:
+        """Most time of the clock that a frame should take [s], for games; None, the default, for no limit. To be set.
+
+        By what the frames before took, fewer substeps are made than wanted, but one at least, and where one takes too
+        long contacts are swept once. ``diagnostics()["substeps_reason"]`` is ``"budget"`` then, and one warning tells so.
+        Where it cuts, results depend on the machine; where it does not, they are the same bits as without."""
+        return self._native.budget
+
+    @budget.setter
+    def budget(self, seconds: float | None) -> None:
+        if seconds is not None and not 0.0 < seconds < 1e6:
+            raise ValueError(f"a budget is a positive time in seconds, or None: not {seconds}")
+        self._native.set_budget(None if seconds is None else float(seconds))
+
     # -- changing ------------------------------------------------------------------------------
 
     def edit(self) -> Edit:
-        """Changes particles and bodies between two frames, all at once or not at all::
+        """Changes particles, bodies, emitters and ropes between two frames, all at once or not at all::
 
             with sim.edit() as e:
                 e.velocities[sim.ids_of("water")] = 0
@@ -199,6 +214,7 @@ class Simulation(Drawable):
             "threads": self.threads,
             "hooks": self._hooks,
             "groups": self._groups,
+            "budget": self.budget,
             "state": self.state(),
         }
 
@@ -207,6 +223,7 @@ class Simulation(Drawable):
         self._hooks = list(saved["hooks"])
         for name, project in saved["groups"]:
             self.add_group(name, project)
+        self.budget = saved["budget"]
         self.restore(saved["state"])
 
     def copy(self) -> Simulation:

@@ -1,4 +1,4 @@
-"""Bodies, joints and contacts of a running simulation: as arrays, and asked."""
+"""Bodies, joints, contacts, emitters and ropes of a running simulation: as arrays, and asked."""
 
 from __future__ import annotations
 
@@ -97,8 +97,32 @@ class Joint(NamedTuple):
     removed: bool
 
 
+class Emitter(NamedTuple):
+    """An emitter as it is now. See `Simulation.emitters`."""
+
+    name: str
+    material: str
+    position: tuple[float, float]
+    """Middle of its face [m]."""
+    speed: float
+    """Speed at its face [m/s]."""
+    temperature: float
+    running: bool
+    removed: bool
+
+
+class Rope(NamedTuple):
+    """A rope as it is now. See `Simulation.ropes`."""
+
+    ids: list[int]
+    """Ids of its points, from its first end to its last."""
+    cuts: list[int]
+    """Pieces that are cut: number k lies between the points k and k + 1."""
+    removed: bool
+
+
 class World:
-    """Bodies, joints and contacts of a `Simulation`, between two frames."""
+    """Bodies, joints, contacts, emitters and ropes of a `Simulation`, between two frames."""
 
     _native: _native.Solver
 
@@ -136,6 +160,16 @@ class World:
     def joints(self) -> list[Joint]:
         """All joints by number, with their loads; those that are broken or removed keep their place."""
         return [Joint(**joint) for joint in _native.joints(self._native)]
+
+    @property
+    def emitters(self) -> list[Emitter]:
+        """All emitters by number; those that were removed keep their place."""
+        return [Emitter(*emitter) for emitter in _native.emitters(self._native)]
+
+    @property
+    def ropes(self) -> list[Rope]:
+        """All ropes by number; those that were removed keep their place."""
+        return [Rope(*rope) for rope in _native.ropes(self._native)]
 
     def wake(self) -> None:
         """Wakes all bodies and liquids that sleep."""
@@ -248,4 +282,4 @@ def _mask(layers: Iterable[int] | None) -> int:
     return mask
 
 
-__all__ = ["Contact", "ContactEvent", "ContactPair", "Joint", "Nearest", "RayHit", "World"]
+__all__ = ["Contact", "ContactEvent", "ContactPair", "Emitter", "Joint", "Nearest", "RayHit", "Rope", "World"]

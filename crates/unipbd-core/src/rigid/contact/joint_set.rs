@@ -35,6 +35,13 @@ impl Contacts {
         self.exclude_joined();
     }
 
+    /// The same, of a joint that may be over.
+    pub(crate) fn end_joint(&mut self, index: usize, bodies: &mut Bodies) {
+        if !self.joints[index].is_over() {
+            self.remove_joint(index, bodies);
+        }
+    }
+
     /// Takes away the joints of a body.
     pub(crate) fn remove_joints_of(&mut self, body: u32, bodies: &mut Bodies) {
         let of_body = |linked: &Linked| linked.joint.body == body || linked.joint.other == Some(body);

@@ -83,6 +83,9 @@ use watch::Watch;
 #[derive(Clone, serde::Serialize, serde::Deserialize)]
 pub struct Contacts {
     settings: ContactSettings,
+    /// Whether a call of [`Contacts::iterate`] sweeps once, whatever the settings say.
+    #[serde(skip)]
+    once: bool,
     #[serde(skip, default = "in_turn")]
     solver: Arc<dyn ContactSolver>,
     narrow_phase: NarrowPhase,
@@ -151,6 +154,7 @@ impl Contacts {
                 ContactMethod::SplitJacobi => Arc::new(Split),
             },
             settings,
+            once: false,
             narrow_phase: NarrowPhase::new(walls, settings.friction_rule),
             joints: Vec::new(),
             broke: Vec::new(),

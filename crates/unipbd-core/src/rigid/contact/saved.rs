@@ -42,6 +42,7 @@ impl Contacts {
             backward: saved.backward,
             dt: saved.dt,
             settings: self.settings,
+            once: self.once,
             solver: self.solver.clone(),
             moment: self.moment,
             warm_factor: self.warm_factor,

@@ -110,12 +110,22 @@ impl Contacts {
         ));
     }
 
+    /// Whether calls of [`iterate`](Contacts::iterate) sweep once from now on, whatever the settings say: a frame has no
+    /// time for more.
+    pub(crate) fn sweep_once(&mut self, once: bool) {
+        self.once = once;
+    }
+
+    fn sweeps(&self) -> u32 {
+        if self.once { self.settings.iterations.min(1) } else { self.settings.iterations }
+    }
+
     /// Iterations of all contacts and joints on the displacements; two iterations by default.
     pub fn iterate(&mut self, bodies: &mut Bodies) {
         if !self.solver.at_once() {
             return self.iterate_in_turn(bodies);
         }
-        for _ in 0..self.settings.iterations {
+        for _ in 0..self.sweeps() {
             let (order, rows) = (Order::AtOnce(&mut self.jacobi), self.narrow_phase.rows());
             let (joints, masses) = (&mut self.joints[..], seen(&self.scaled, &bodies.inverse_masses));
             self.solver.sweep(Sweep { order, rows, joints, masses, motion: &mut bodies.displacements });
@@ -124,10 +134,11 @@ impl Contacts {
 
     /// Sweeps in the direction of the substep; the contacts get their impulses at its end.
     fn iterate_in_turn(&mut self, bodies: &mut Bodies) {
+        let sweeps = self.sweeps();
         let (masses, motion) = (&bodies.inverse_masses, &mut bodies.displacements[..]);
         let (joints, blocks) = (&mut self.joints[..], &mut self.blocks);
         blocks.take_motion(motion);
-        for _ in 0..self.settings.iterations {
+        for _ in 0..sweeps {
             let mut move_joints = |blocks: &mut Blocks| {
                 if !joints.is_empty() {
                     blocks.give_motion(motion);

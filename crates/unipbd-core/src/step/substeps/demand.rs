@@ -4,9 +4,10 @@ use super::controller::Demand;
 use super::statistics::FluidStatistics;
 use crate::coupling::RigidBodies;
 use crate::math::{Vector, Vector64, vector, wide};
-use crate::observe::{Event, Severity};
+use crate::observe::{Event, Severity, SubstepReason};
 use crate::phase::Phase;
-use crate::step::world::{Push, World};
+use crate::step::clock::Push;
+use crate::step::world::World;
 use std::ops::Range;
 
 /// Limit of the pressure, relative to the pressure expected from depth and speed.
@@ -26,9 +27,9 @@ impl World {
         let demand = self.demand(liquids);
         self.clock.pressure_limit = self.pressure_limit_of(fluids);
         let (rule, last, frame) = (self.parts.substeps, self.clock.substeps, self.parts.frame_time);
-        let choice = rule.choose_after(last, frame, demand);
+        let choice = self.within_budget(rule.choose_after(last, frame, demand));
         self.clock.stiffness = rule.stiffness_after(last, self.clock.stiffness, frame, demand, choice.substeps);
-        let capped = choice.wanted > choice.substeps;
+        let capped = choice.wanted > choice.substeps && choice.reason != SubstepReason::Budget;
         if capped && !self.clock.capped {
             let message = format!(
                 "substeps capped at {}: {} were wanted for speed {:.3} m/s and pressure {:.3} m^2/s^2; \
