@@ -2,6 +2,8 @@
 
 mod bench;
 mod dispatch;
+#[cfg(feature = "live")]
+mod live;
 mod logs;
 mod render;
 mod run;

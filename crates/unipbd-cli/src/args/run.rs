@@ -17,6 +17,7 @@ Examples:
   unipbd run scenes/open_gas.toml --threads 4 --duration 2 -o short.mcap --force
   unipbd run my_scene.toml --set liquid.0.xsph=0.02 --set solver.substeps=16
   unipbd run my_scene.toml --stop-on 'density_error>0.05' --stop-on 'time>1.5'
+  unipbd run scenes/water_wheel.toml --live
 
 Exit codes: 0 done, 1 input or output, 2 arguments, 3 scene, 4 diverged, 5 --stop-on met or
 --expect not held, 129 terminal closed, 130 Ctrl-C, 143 SIGTERM.";
@@ -97,6 +98,10 @@ pub struct RunArgs {
     /// The log and what goes into it.
     #[command(flatten)]
     pub log: LogArgs,
+    /// Viewers that watch.
+    #[cfg(feature = "live")]
+    #[command(flatten)]
+    pub live: super::live::LiveArgs,
 }
 
 /// The log of a run.

@@ -48,14 +48,7 @@ impl Recording {
         if is_pipe(destination.written()) {
             console.note(format_args!("waiting for somebody to read {}", destination.written().display()));
         }
-        let header = Header {
-            setting: simulation.setting(&loaded.scene, &loaded.path),
-            scene_text: loaded.text.clone(),
-            overrides: loaded.overrides.iter().map(ToString::to_string).collect(),
-            seed: simulation.solver.seed(),
-            fps: loaded.scene.fps,
-            gravity: loaded.scene.gravity,
-        };
+        let header = header(simulation, loaded);
         let recorder = match destination.is_standard_output() {
             true => Recorder::to_writer(std::io::stdout(), "standard output".as_ref(), &header, fields),
             false => Recorder::create(destination.written(), &header, fields),
@@ -84,6 +77,18 @@ impl Recording {
             console.note(format_args!("{} stays; the log of this run is {}", older.display(), path.display()));
         }
         Ok(LogFile { path, bytes: summary.bytes })
+    }
+}
+
+/// What the log of a run says once.
+pub(super) fn header(simulation: &Simulation, loaded: &LoadedScene) -> Header {
+    Header {
+        setting: simulation.setting(&loaded.scene, &loaded.path),
+        scene_text: loaded.text.clone(),
+        overrides: loaded.overrides.iter().map(ToString::to_string).collect(),
+        seed: simulation.solver.seed(),
+        fps: loaded.scene.fps,
+        gravity: loaded.scene.gravity,
     }
 }
 
