@@ -99,9 +99,10 @@ impl Live {
 
     /// Sends the state at the start or after a frame, if anybody watches.
     pub fn frame(&mut self, simulation: &Simulation, diagnostics: Option<&Diagnostics>, events: &[Event]) {
-        let stepped = self.count_steps(simulation);
+        let single = simulation.solver.frame() == 0 || !self.shared.lock().steps.is_empty();
         self.stream.add_events(events);
-        self.stream.frame(&self.server, simulation, diagnostics, stepped);
+        self.stream.frame(&self.server, simulation, diagnostics, single);
+        self.count_steps(simulation);
     }
 
     /// Tells viewers that the run is over. The last frame stays, for those who come later too, while [`serve`](Self::serve)
@@ -165,21 +166,17 @@ impl Live {
         (parameters::list(simulation, &controls, self.server.scene()), controls.playback())
     }
 
-    /// Counts the frames that were asked for one by one; says whether this was one of them.
-    fn count_steps(&mut self, simulation: &Simulation) -> bool {
+    /// Counts the frames that were asked for one by one.
+    fn count_steps(&mut self, simulation: &Simulation) {
         let solver = &simulation.solver;
         let mut controls = self.shared.lock();
         controls.see(solver.time());
-        if solver.frame() == 0 {
-            return true;
-        }
-        let Some(steps) = controls.steps.front_mut() else { return false };
+        let Some(steps) = controls.steps.front_mut().filter(|_| solver.frame() > 0) else { return };
         steps.left = steps.left.saturating_sub(1);
         if steps.left == 0 {
             let done = controls.steps.pop_front();
             drop(controls);
             done.into_iter().for_each(|steps| steps.finish(solver.frame(), solver.time()));
         }
-        true
     }
 }

@@ -1,6 +1,6 @@
 //! A viewer of the Foxglove WebSocket protocol, and a run for it to watch.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, VecDeque};
 use std::io::{BufRead, BufReader, Read};
 use std::net::TcpStream;
 use std::process::{Child, Command, Output, Stdio};
@@ -118,6 +118,8 @@ pub struct Viewer {
     pub channels: BTreeMap<String, Value>,
     pub services: Value,
     kinds: BTreeMap<u64, (String, MessageDescriptor)>,
+    /// What came while something else was waited for: data and answers have queues of their own.
+    kept: VecDeque<Heard>,
 }
 
 impl Viewer {
@@ -129,9 +131,14 @@ impl Viewer {
         stream.set_read_timeout(Some(Duration::from_secs(60))).unwrap();
         let (socket, answer) = tungstenite::client(request, stream).unwrap();
         assert_eq!(answer.headers()["Sec-WebSocket-Protocol"], "foxglove.sdk.v1");
-        let nothing = Value::Null;
-        let kinds = BTreeMap::new();
-        let mut viewer = Viewer { socket, info: nothing.clone(), channels: BTreeMap::new(), services: nothing, kinds };
+        let mut viewer = Viewer {
+            socket,
+            info: Value::Null,
+            channels: BTreeMap::new(),
+            services: Value::Null,
+            kinds: BTreeMap::new(),
+            kept: VecDeque::new(),
+        };
         viewer.info = viewer.text("serverInfo");
         while viewer.services.is_null() {
             let Heard::Text(message) = viewer.hear() else { continue };
@@ -167,6 +174,26 @@ impl Viewer {
 
     /// The next message, whatever it is.
     pub fn hear(&mut self) -> Heard {
+        self.kept.pop_front().unwrap_or_else(|| self.read())
+    }
+
+    /// The first message that is wanted; others are kept.
+    fn wait<T>(&mut self, wanted: impl Fn(&Heard) -> Option<T>) -> T {
+        let kept = self.kept.iter().enumerate().find_map(|(place, heard)| Some((place, wanted(heard)?)));
+        if let Some((place, found)) = kept {
+            self.kept.remove(place);
+            return found;
+        }
+        loop {
+            let heard = self.read();
+            match wanted(&heard) {
+                Some(found) => return found,
+                None => self.kept.push_back(heard),
+            }
+        }
+    }
+
+    fn read(&mut self) -> Heard {
         loop {
             match self.socket.read().unwrap() {
                 Message::Text(text) => return Heard::Text(serde_json::from_str(&text).unwrap()),
@@ -209,24 +236,18 @@ impl Viewer {
 
     /// The next text with this `op`.
     pub fn text(&mut self, op: &str) -> Value {
-        loop {
-            if let Heard::Text(message) = self.hear()
-                && message["op"] == op
-            {
-                return message;
-            }
-        }
+        self.wait(|heard| match heard {
+            Heard::Text(message) if message["op"] == op => Some(message.clone()),
+            _ => None,
+        })
     }
 
     /// The next message on a topic, with its time.
     pub fn data(&mut self, wanted: &str) -> (u64, DynamicMessage) {
-        loop {
-            if let Heard::Data { topic, time, message } = self.hear()
-                && topic == wanted
-            {
-                return (time, *message);
-            }
-        }
+        self.wait(|heard| match heard {
+            Heard::Data { topic, time, message } if topic == wanted => Some((*time, (**message).clone())),
+            _ => None,
+        })
     }
 
     /// Asks for this many frames.
@@ -244,13 +265,11 @@ impl Viewer {
     /// Has the run go on by this many frames; returns the frame it comes to.
     pub fn step(&mut self, frames: u64) -> Value {
         self.ask_for_steps(frames);
-        loop {
-            match self.hear() {
-                Heard::Service(answer) => return answer,
-                Heard::Text(message) if message["op"] == "serviceCallFailure" => return message,
-                _ => {}
-            }
-        }
+        self.wait(|heard| match heard {
+            Heard::Service(answer) => Some(answer.clone()),
+            Heard::Text(message) if message["op"] == "serviceCallFailure" => Some(message.clone()),
+            _ => None,
+        })
     }
 
     /// Uses the bar of the viewer: 0 plays, 1 pauses.
@@ -265,11 +284,10 @@ impl Viewer {
 
     /// The next state of the controls.
     pub fn playback(&mut self) -> (u8, f32) {
-        loop {
-            if let Heard::Playback { status, speed } = self.hear() {
-                return (status, speed);
-            }
-        }
+        self.wait(|heard| match heard {
+            Heard::Playback { status, speed } => Some((*status, *speed)),
+            _ => None,
+        })
     }
 
     /// Sets a parameter; returns what the server makes of it.
@@ -285,12 +303,10 @@ impl Viewer {
     }
 
     fn answer(&mut self, id: &str) -> Value {
-        let message = loop {
-            let message = self.text("parameterValues");
-            if message["id"] == id {
-                break message;
-            }
-        };
+        let message = self.wait(|heard| match heard {
+            Heard::Text(message) if message["op"] == "parameterValues" && message["id"] == id => Some(message.clone()),
+            _ => None,
+        });
         let found = message["parameters"].as_array().unwrap().iter();
         found.map(|one| (one["name"].as_str().unwrap().to_owned(), one["value"].clone())).collect::<serde_json::Map<_, _>>().into()
     }

@@ -47,8 +47,9 @@ fn the_clock_of_viewers_shows_simulated_time() {
     viewer.ask_for_steps(2);
     let mut clock = Vec::new();
     while clock.len() < 2 {
-        if let Heard::Time(time) = viewer.hear() {
-            clock.push(time);
+        match viewer.hear() {
+            Heard::Time(time) if time > 0 => clock.push(time),
+            _ => {}
         }
     }
     assert_eq!(clock, [20_000_000, 40_000_000]);
