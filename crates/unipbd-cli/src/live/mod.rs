@@ -26,7 +26,7 @@ use requests::Request;
 use server::Server;
 use stream::Stream;
 
-pub use options::{DEFAULT_ADDRESS, LiveOptions, speed};
+pub use options::{DEFAULT_ADDRESS, InvalidAddress, LiveOptions, speed};
 
 /// Longest wait before the caller can look for a signal.
 const PATIENCE: Duration = Duration::from_millis(50);
