@@ -20,7 +20,8 @@ def drop() -> up.Simulation:
 
 class Viewer:
     def __init__(self, url: str) -> None:
-        self.socket: ClientConnection = connect(url, subprotocols=["foxglove.sdk.v1"], compression=None)
+        self.connection = connect(url, subprotocols=["foxglove.sdk.v1"], compression=None)
+        self.socket: ClientConnection = self.connection.__enter__()
         self.kept: list[object] = []
         self.channels: dict[str, int] = {}
         for channel in self.text("advertise")["channels"]:
@@ -31,7 +32,7 @@ class Viewer:
         return self
 
     def __exit__(self, *_: object) -> None:
-        self.socket.close()
+        self.connection.__exit__(None, None, None)
 
     def say(self, **message: object) -> None:
         self.socket.send(json.dumps(message))
@@ -101,7 +102,7 @@ def test_gravity_that_a_viewer_sets_is_that_of_the_simulation_and_is_logged(capl
     with alone.edit() as edit:
         edit.gravity = (0, -1.62)
     alone.step(5)
-    assert sim.state_hash == alone.state_hash
+    assert sim.state_hash() == alone.state_hash()
 
 
 def test_what_cannot_be_is_refused() -> None:

@@ -20,7 +20,8 @@ pub fn start_live(
     paused: bool,
     fields: &str,
 ) -> PyResult<String> {
-    let place: LiveOptions = address.parse().map_err(|error: InvalidAddress| PyValueError::new_err(error.to_string()))?;
+    let place: LiveOptions =
+        address.parse().map_err(|error: InvalidAddress| PyValueError::new_err(error.to_string()))?;
     let speed = checked_speed(speed).map_err(|reason| PyValueError::new_err(format!("speed: {reason}")))?;
     let fields: Fields = fields.parse().map_err(|error: UnknownField| PyValueError::new_err(error.to_string()))?;
     let options = LiveOptions { speed, paused, ..place };

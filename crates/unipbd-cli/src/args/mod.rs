@@ -18,7 +18,7 @@ use clap_complete::Shell;
 pub use bench::BenchArgs;
 pub use dispatch::{is_log, log_is_no_scene, with_default_command};
 pub use logs::{ExportArgs, ExportFormat, LayoutArgs, RecoverArgs};
-pub use render::RenderArgs;
+pub use render::{LookArgs, RenderArgs};
 pub use run::{LogArgs, RunArgs, SceneChanges};
 pub use stop_on::StopCondition;
 

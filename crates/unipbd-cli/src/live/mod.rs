@@ -144,7 +144,8 @@ impl Live {
                 let event = |message: String| Event { time, severity: Severity::Info, message };
                 self.events.extend(changes.made.into_iter().map(event));
                 let (all, state) = self.present(simulation);
-                responder.respond(all.iter().filter(|one| values.iter().any(|it| it.name == one.name)).cloned().collect());
+                responder
+                    .respond(all.iter().filter(|one| values.iter().any(|it| it.name == one.name)).cloned().collect());
                 self.server.tell_parameters(all);
                 self.server.tell(state);
             }

@@ -44,11 +44,7 @@ pub fn list(simulation: &Simulation, controls: &Controls, scene: &BTreeMap<Strin
             all.push(Parameter::float64(motor_name(number, joint), motor.speed));
         }
     }
-    all.push(Parameter {
-        name: SCENE.to_owned(),
-        r#type: None,
-        value: Some(ParameterValue::Dict(entries.collect())),
-    });
+    all.push(Parameter { name: SCENE.to_owned(), r#type: None, value: Some(ParameterValue::Dict(entries.collect())) });
     all
 }
 

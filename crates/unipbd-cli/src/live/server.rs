@@ -21,10 +21,8 @@ use crate::simulation::Simulation;
 const BACKLOG: usize = 512;
 /// Frames that may be asked for at once.
 const MOST_STEPS: u64 = 1_000_000;
-const STEP_REQUEST: &str =
-    r#"{"type":"object","properties":{"frames":{"type":"integer","minimum":1,"default":1}}}"#;
-const STEP_RESPONSE: &str =
-    r#"{"type":"object","properties":{"frame":{"type":"integer"},"time":{"type":"number"}}}"#;
+const STEP_REQUEST: &str = r#"{"type":"object","properties":{"frames":{"type":"integer","minimum":1,"default":1}}}"#;
+const STEP_RESPONSE: &str = r#"{"type":"object","properties":{"frame":{"type":"integer"},"time":{"type":"number"}}}"#;
 
 /// A server that listens.
 pub struct Server {

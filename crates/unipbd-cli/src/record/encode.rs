@@ -91,7 +91,12 @@ impl Encoder {
 
     /// Encodes the wanted topics of a frame into `frame`, whose memory is reused. `/particles` comes last: where it is,
     /// the frame is whole.
-    pub(crate) fn encode(&mut self, state: &FrameState<'_>, wanted: Topics, frame: &mut EncodedFrame) -> io::Result<()> {
+    pub(crate) fn encode(
+        &mut self,
+        state: &FrameState<'_>,
+        wanted: Topics,
+        frame: &mut EncodedFrame,
+    ) -> io::Result<()> {
         let snapshot = state.snapshot;
         check_columns(snapshot)?;
         frame.messages.clear();

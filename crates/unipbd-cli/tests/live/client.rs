@@ -308,7 +308,10 @@ impl Viewer {
             _ => None,
         });
         let found = message["parameters"].as_array().unwrap().iter();
-        found.map(|one| (one["name"].as_str().unwrap().to_owned(), one["value"].clone())).collect::<serde_json::Map<_, _>>().into()
+        found
+            .map(|one| (one["name"].as_str().unwrap().to_owned(), one["value"].clone()))
+            .collect::<serde_json::Map<_, _>>()
+            .into()
     }
 }
 

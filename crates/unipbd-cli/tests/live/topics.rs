@@ -2,16 +2,8 @@
 
 use crate::client::{Heard, Run, Viewer, points};
 
-const ALL: [&str; 8] = [
-    "/bodies",
-    "/boundary",
-    "/diagnostics",
-    "/log",
-    "/particles",
-    "/particles/columns",
-    "/scene",
-    "/tf",
-];
+const ALL: [&str; 8] =
+    ["/bodies", "/boundary", "/diagnostics", "/log", "/particles", "/particles/columns", "/scene", "/tf"];
 
 #[test]
 fn a_viewer_gets_the_topics_it_subscribes_to_decoded_by_their_schemas() {
