@@ -112,7 +112,7 @@ pub struct LookArgs {
     /// Draw arrows: mean velocities of particles, or the forces of fluids and of contacts on bodies
     #[arg(long, value_name = "QUANTITY", value_parser = vectors())]
     pub vectors: Option<Vectors>,
-    /// What the longest arrow stands for [m/s], [N]; left out, the longest of the pictures
+    /// What the longest arrow stands for [m/s], [N]; left out, the longest of all but one in fifty
     #[arg(long, value_name = "NUMBER", requires = "vectors", allow_negative_numbers = true, value_parser = positive)]
     pub vector_max: Option<f64>,
 }

@@ -124,6 +124,12 @@ pub struct LogArgs {
     /// /bodies/samples.
     #[arg(long, value_name = "FIELDS", default_value = "", hide_default_value = true)]
     pub fields: Fields,
+    /// Write a layout of Lichtblick and Foxglove that frames the scene
+    ///
+    /// With --live it is there from the start, framing the first frame. A layout that unipbd wrote is replaced, another
+    /// file with --force alone.
+    #[arg(long, value_name = "FILE", conflicts_with = "no_record")]
+    pub layout: Option<PathBuf>,
     /// Write no log
     ///
     /// With -q too, and neither --json nor --stop-on, the frames are not measured either: the quickest run.

@@ -32,6 +32,11 @@ impl Viewers {
         Ok(Viewers(Some(live)))
     }
 
+    /// Whether the run is live.
+    pub fn are_possible(&self) -> bool {
+        self.0.is_some()
+    }
+
     /// Whether the next frame is due; waits a moment where it is not.
     pub fn is_due(&mut self, simulation: &mut Simulation) -> bool {
         self.0.as_mut().is_none_or(|live| live.is_due(simulation))

@@ -1,8 +1,11 @@
 //! `run`: a scene from start to end.
 
+use std::path::Path;
+
 use unipbd_core::observe::{Diagnostics, Event};
 use unipbd_core::{BuildOptions, SolverError};
 
+use super::layout;
 use super::live::Viewers;
 use super::recording::Recording;
 use super::scene::{load, threads};
@@ -31,8 +34,12 @@ pub(super) fn run(arguments: &RunArgs, console: Console) -> Result<Exit, Failure
     interrupt::listen();
     let progress = Progress::new(console, simulation.frames, loaded.scene.duration);
     let watch = arguments.expect.then(|| Watch::new(&loaded.scene));
+    let layout = arguments.log.layout.as_deref();
+    if let Some(path) = layout.filter(|_| viewers.are_possible()) {
+        layout::write(path, &layout::of_start(&simulation, &simulation.setting(&loaded.scene, &loaded.path)))?;
+    }
     let conditions = &arguments.stop_on;
-    let mut run = Run { watch, simulation, recording, viewers, statistics, progress, console, conditions };
+    let mut run = Run { watch, simulation, recording, viewers, statistics, progress, console, conditions, layout };
     let ended = run.until_end();
     run.progress.finish();
     run.close(ended, title(&loaded.scene, &loaded.path))
@@ -47,6 +54,7 @@ struct Run<'a> {
     progress: Progress,
     console: Console,
     conditions: &'a [StopCondition],
+    layout: Option<&'a Path>,
     watch: Option<Watch>,
 }
 
@@ -129,7 +137,11 @@ impl Run<'_> {
         let whole = matches!(&ended, Ok((Outcome::Completed | Outcome::ConditionMet { .. }, _)));
         let log = self.recording.take().map(|recording| recording.finish(whole, self.console)).transpose();
         let (outcome, last) = ended?;
-        let log: Option<LogFile> = log?;
+        let mut log: Option<LogFile> = log?;
+        if let (Some(log), Some(path)) = (&mut log, self.layout) {
+            layout::write(path, &layout::of_log(&log.path)?)?;
+            log.layout = Some(path.to_owned());
+        }
         let completed = matches!(outcome, Outcome::Completed);
         let violations = self.watch.filter(|_| completed).map(|watch| watch.violations(&self.simulation.solver));
         let exit = match &violations {

@@ -16,6 +16,10 @@ impl Viewers {
         Ok(Viewers)
     }
 
+    pub fn are_possible(&self) -> bool {
+        false
+    }
+
     pub fn is_due(&mut self, _: &mut Simulation) -> bool {
         true
     }

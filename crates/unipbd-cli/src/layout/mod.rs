@@ -38,6 +38,11 @@ pub fn layout(setting: &Setting, view: View, topics: &[String]) -> Value {
     layout
 }
 
+/// Whether this is a layout that [`layout`] made.
+pub fn is_layout(text: &Value) -> bool {
+    text["configById"][VIEW_PANEL].is_object()
+}
+
 fn cloud(visible: bool, size: f64) -> Value {
     json!({
         "visible": visible,

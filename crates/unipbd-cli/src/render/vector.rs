@@ -110,7 +110,11 @@ impl Still<'_> {
                     Some(_) => continue,
                     None => (material.unwrap_or(self.theme.faint_text), opacity),
                 };
-                sheet.disc(self.camera.particle(frame.positions[row]), radius, color, opacity);
+                let center = self.camera.particle(frame.positions[row]);
+                // What is cut away need not be in the file.
+                if (0..2).all(|axis| (-radius..=self.camera.size[axis] as f32 + radius).contains(&center[axis])) {
+                    sheet.disc(center, radius, color, opacity);
+                }
             }
         }
         sheet.cut_to(None);
