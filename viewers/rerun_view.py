@@ -106,7 +106,7 @@ def rows(batch, *columns):
 def opaque(colors):
     """Colours as they look on the ground of the view: Rerun adds translucent points up."""
     parts = (colors[:, None] >> numpy.array([24, 16, 8, 0])) & 0xFF
-    share = numpy.clip(1.5 * parts[:, 3:] / 255.0, 0.0, 1.0)
+    share = numpy.clip(2.5 * parts[:, 3:] / 255.0, 0.0, 1.0)
     return (share * parts[:, :3] + (1.0 - share) * numpy.array(GROUND)).astype(numpy.uint8)
 
 

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
+use std::time::Duration;
 
 use foxglove::websocket::service::{Handler, Request as Call, Responder, Service, ServiceSchema};
 use foxglove::websocket::{
@@ -19,6 +20,8 @@ use crate::simulation::Simulation;
 
 /// Messages that wait for a viewer at most: about a second of frames. Beyond, the oldest are left out.
 const BACKLOG: usize = 512;
+/// Longest wait for viewers to hear that the server closes.
+const FAREWELL: Duration = Duration::from_millis(500);
 /// Frames that may be asked for at once.
 const MOST_STEPS: u64 = 1_000_000;
 const STEP_REQUEST: &str = r#"{"type":"object","properties":{"frames":{"type":"integer","minimum":1,"default":1}}}"#;
@@ -117,11 +120,18 @@ impl Server {
     }
 }
 
-/// Viewers are told that the server closes.
+/// Viewers are told that the server closes; one that reads nothing is not waited for.
 impl Drop for Server {
     fn drop(&mut self) {
-        if let Some(handle) = self.handle.take() {
-            handle.stop().wait_blocking();
+        let Some(handle) = self.handle.take() else { return };
+        let (done, told) = std::sync::mpsc::channel();
+        let closing = handle.stop();
+        let waiting = std::thread::Builder::new().name("live server".to_owned()).spawn(move || {
+            closing.wait_blocking();
+            let _ = done.send(());
+        });
+        if waiting.is_ok() {
+            let _ = told.recv_timeout(FAREWELL);
         }
     }
 }

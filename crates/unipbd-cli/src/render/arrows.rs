@@ -56,7 +56,10 @@ impl Arrows<'_> {
         for arrow in &arrows {
             let [x, y] = self.camera.pixel(arrow.from);
             let way = [(arrow.vector.x * pixels) as f32, -(arrow.vector.y * pixels) as f32];
-            self.arrow(paper, [x, y], way, arrow.color);
+            let inside = |at: f32, axis: usize| (0.0..=self.camera.size[axis] as f32).contains(&at);
+            if inside(x, 0) && inside(y, 1) {
+                self.arrow(paper, [x, y], way, arrow.color);
+            }
         }
         self.key(paper, round_length(longest), pixels);
         Ok(())

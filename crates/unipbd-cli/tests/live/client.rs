@@ -75,8 +75,21 @@ impl Run {
         Run { child, url, folder, stderr }
     }
 
-    pub fn id(&self) -> u32 {
-        self.child.id()
+    /// Ctrl-C; where there is none, the run is killed.
+    pub fn interrupt(&mut self) {
+        if cfg!(unix) {
+            Command::new("kill").args(["-INT", &self.child.id().to_string()]).status().unwrap();
+        } else {
+            self.child.kill().unwrap();
+        }
+    }
+
+    /// Whether it ends by itself within a minute.
+    pub fn ends(&mut self) -> bool {
+        (0..600).any(|_| {
+            std::thread::sleep(Duration::from_millis(100));
+            self.child.try_wait().unwrap().is_some()
+        })
     }
 
     /// Waits for the end; returns the exit code, standard output and what else was on standard error.
