@@ -78,6 +78,7 @@ release() {
     rm -rf "$out" && mkdir -p "$out" || return 1
     scripts/archive.sh || return 1
     cargo publish --dry-run --workspace --allow-dirty || return 1
+    scripts/publish_f64.sh --dry-run || return 1
     "$python" -m pip install --quiet --disable-pip-version-check "maturin>=1.9,<2" "twine>=6" || return 1
     "$python" -m maturin build --release --out "$out" -m crates/unipbd-py/Cargo.toml || return 1
     "$python" -m maturin sdist --out "$out" -m crates/unipbd-py/Cargo.toml || return 1

@@ -312,7 +312,7 @@ fn corrections_and_repulsion_push_both_of_a_pair_alike() {
 
 #[cfg(not(feature = "f64"))]
 #[test]
-#[should_panic(expected = "shortest_column")]
+#[should_panic(expected = "as many rows as the list")]
 fn short_columns_are_refused() {
     let set = Set::random(100, Periodic::NONE);
     let mut out = vec![Vector::ZERO; 100];

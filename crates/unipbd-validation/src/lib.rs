@@ -1,6 +1,9 @@
 //! Cases with a known answer: each a scene made in code, its error against the truth, its band and
 //! its cost. `cargo run --release -p unipbd-validation -- --help` says what can be run.
 
+#[cfg(feature = "f64")]
+extern crate unipbd_core_f64 as unipbd_core;
+
 pub mod case;
 pub mod cases;
 pub mod chart;

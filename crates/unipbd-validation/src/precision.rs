@@ -192,7 +192,7 @@ pub fn measure_double() -> Result<Vec<Reading>, Failure> {
 pub fn section(single: &[Reading], double: &[Reading]) -> String {
     let mut text = format!("Made by `cargo run --release -p unipbd-validation -- --precision`, {}: ", stamp());
     text.push_str(
-        "the same scenes in f32, the build that ships, and with the cargo feature `f64`, at 8 substeps. Mean C is taken over particles and frames; momentum is \
+        "the same scenes in f32, the build that ships, and by `unipbd-core-f64`, at 8 substeps. Mean C is taken over particles and frames; momentum is \
          its change over the sum of m |v| at the start, angular momentum likewise; energy is its change from start to \
          end. The spacing is 1/8 m, so that walls and lattices lie at the same places in both.\n\n\
          At 1e5 dx a position in f32 is rounded to 0.008 dx. From 4096 dx on the density is therefore summed over \

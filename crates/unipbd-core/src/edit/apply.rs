@@ -19,6 +19,25 @@ impl Solver {
     ///
     /// # Errors
     /// [`EditError`] names the fault; nothing has changed then.
+    ///
+    /// ```
+    /// # use unipbd_core::{BuildOptions, scene::*};
+    /// # use unipbd_core::{Edit, Vector64};
+    /// # let scene = Scene {
+    /// #     spacing: 0.1,
+    /// #     half_plane: vec![HalfPlane::new([0.0, 0.0], [0.0, 1.0])],
+    /// #     body: vec![BodyDescription::rectangle([1.0, 1.0], [0.0, 1.0])],
+    /// #     ..Scene::default()
+    /// # };
+    /// let mut solver = scene.build(BuildOptions::default())?;
+    /// let disc = BodyDescription::disc(0.2, [0.0, 3.0]);
+    /// let edit = Edit::new().add_body(disc).push_body(0, Vector64::new(50.0, 0.0), Vector64::new(0.0, 1.0));
+    /// solver.apply(&edit)?;
+    /// assert_eq!(solver.bodies().len(), 2);
+    /// let faulty = Edit::new().remove_body(1).remove_body(7); // there is no body 7
+    /// assert!(solver.apply(&faulty).is_err() && !solver.bodies()[1].removed);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn apply(&mut self, edit: &Edit) -> Result<Range<u32>, EditError> {
         Checker::new(self).check(edit)?;
         let first = self.particles().ids_given();

@@ -67,6 +67,21 @@ impl<T: Default> Quantity<T> {
 }
 
 /// A type whose quantities are in a table.
+///
+/// ```
+/// # use unipbd_core::{BuildOptions, scene::*};
+/// # use unipbd_core::observe::{Diagnostics, Table};
+/// # let water = vec![Liquid::new("water", 1000.0)];
+/// # let block = vec![Block::new("water", [0.0, 0.0], [1.0, 0.4])];
+/// # let tank = vec![Tank { name: "pool".into(), ..Tank::new([0.0, 0.0], [1.0, 1.0]) }];
+/// # let scene = Scene { spacing: 0.05, liquid: water, block, tank, ..Scene::default() };
+/// let solver = scene.build(BuildOptions::default())?;
+/// let now = solver.diagnostics();
+/// for quantity in Diagnostics::QUANTITIES {
+///     println!("{} [{}]: {:?}", quantity.name, quantity.unit, (quantity.read)(&now));
+/// }
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
 pub trait Table: Default + 'static {
     /// Name of the type.
     const TYPE: &'static str;

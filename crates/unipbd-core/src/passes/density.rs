@@ -1,12 +1,10 @@
 //! The sums of the density constraint.
 
-use super::{Pairs, Pass, Sink, Weights, in_space, rows_if, store, store_vectors};
+use super::{Pairs, Pass, Rows, Sink, Weights, in_space, store, store_vectors};
 use crate::kernel::Shape;
 use crate::math::{Real, Vector};
-use crate::neighbors::NeighborList;
-use crate::simd::LANES;
-use crate::simd::Number;
 use crate::simd::space::Space;
+use crate::simd::{LANES, Number};
 use std::ops::Range;
 
 /// Input of the density pass.
@@ -52,7 +50,7 @@ pub fn density<K: Shape>(pairs: Pairs<'_>, kernel: K, input: DensityInput<'_>, o
     })
 }
 
-fn fill(pairs: Pairs<'_>, pass: &impl super::AnyForm<4>, out: DensityOutput<'_>) {
+fn fill(pairs: Pairs<'_>, pass: &impl Pass<4>, out: DensityOutput<'_>) {
     pairs.check(out.value.len());
     pairs.parallelism.chunks3(out.value, out.gradient, out.response, |first, value, gradient, response| {
         pairs.run_chunk(pass, first, value.len(), &mut DensityOutput { value, gradient, response });
@@ -80,26 +78,32 @@ impl<'a, K: Shape, S: Space, const SPLIT: bool, const WEIGHTED: bool> Density<'a
 }
 
 impl<K: Shape, S: Space, const SPLIT: bool, const WEIGHTED: bool> Pass<4> for Density<'_, K, S, SPLIT, WEIGHTED> {
-    fn row(&self, list: &NeighborList, row: usize) -> [Real; 4] {
-        let [mut value, mut gradient_x, mut gradient_y, mut response] = [0.0; 4];
-        list.for_each(row, |j| {
-            let apart = self.positions[row] - self.positions[j];
-            let (mut x, mut y) = self.space.shortest(apart.x, apart.y);
-            let mut square = x * x + y * y;
-            let (w, mut g) = self.kernel.at(square);
-            if SPLIT {
-                let apart = self.gradient_positions[row] - self.gradient_positions[j];
-                (x, y) = self.space.shortest(apart.x, apart.y);
-                square = x * x + y * y;
-                g = self.kernel.at(square).1;
-            }
-            let norm = g * g * square;
-            value += w;
-            gradient_x += g * x;
-            gradient_y += g * y;
-            response += if WEIGHTED { norm * self.weights[j] } else { norm };
-        });
-        self.finish([value, gradient_x, gradient_y, response])
+    /// The position, and the position for gradients.
+    type Own<M: Number> = ((M, M), (M, M));
+
+    #[inline(always)]
+    fn own<R: Rows>(&self, rows: R) -> Self::Own<R::Value> {
+        let at = rows.vectors(self.positions);
+        (at, if SPLIT { rows.vectors(self.gradient_positions) } else { at })
+    }
+
+    #[inline(always)]
+    fn terms<R: Rows>(&self, own: &Self::Own<R::Value>, others: R) -> [R::Value; 4] {
+        let (other_x, other_y) = others.vectors(self.positions);
+        let (mut x, mut y) = self.space.shortest(own.0.0 - other_x, own.0.1 - other_y);
+        let mut square = x * x + y * y;
+        let (w, mut g) = self.kernel.at(square);
+        if SPLIT {
+            let (other_x, other_y) = others.vectors(self.gradient_positions);
+            (x, y) = self.space.shortest(own.1.0 - other_x, own.1.1 - other_y);
+            square = x * x + y * y;
+            g = self.kernel.at(square).1;
+        }
+        let mut norm = g * g * square;
+        if WEIGHTED {
+            norm = norm * others.numbers(self.weights);
+        }
+        [others.counted(w), g * x, g * y, norm]
     }
 
     #[inline(always)]
@@ -112,60 +116,5 @@ impl<K: Shape, S: Space, const SPLIT: bool, const WEIGHTED: bool> Pass<4> for De
             y * y.like(slope),
             response * response.like(in_units * in_units * self.factor),
         ]
-    }
-
-    fn shortest_column(&self) -> usize {
-        self.positions.len().min(self.gradient_positions.len()).min(rows_if(WEIGHTED, self.weights))
-    }
-}
-
-#[cfg(not(feature = "f64"))]
-mod lanes {
-    use super::super::run::LanePass;
-    use super::*;
-    use crate::simd::lanes::{ColumnPair, Entry, Turn};
-
-    #[allow(unsafe_code)]
-    impl<K: Shape, S: Space, const SPLIT: bool, const WEIGHTED: bool> LanePass<4> for Density<'_, K, S, SPLIT, WEIGHTED> {
-        /// The position, and the position for gradients.
-        type Own<F: Turn> = ((F, F), (F, F));
-
-        #[inline(always)]
-        unsafe fn own<F: Turn>(&self, base: usize, entries: &ColumnPair<i16>) -> Self::Own<F> {
-            // SAFETY: the caller vouches that all rows are within the columns.
-            unsafe {
-                let at = F::gather_vectors(self.positions.as_ptr().add(base), entries);
-                (at, if SPLIT { F::gather_vectors(self.gradient_positions.as_ptr().add(base), entries) } else { at })
-            }
-        }
-
-        #[inline(always)]
-        unsafe fn terms<F: Turn, E: Entry>(
-            &self,
-            own: &Self::Own<F>,
-            base: usize,
-            entries: &ColumnPair<E>,
-            counted: impl Fn(F) -> F,
-        ) -> [F; 4] {
-            // SAFETY: the caller vouches that all rows are within the columns.
-            let gather = |from: &[Vector]| unsafe { F::gather_vectors(from.as_ptr().add(base), entries) };
-            let (other_x, other_y) = gather(self.positions);
-            let (mut x, mut y) = self.space.shortest(own.0.0 - other_x, own.0.1 - other_y);
-            let mut square = x * x + y * y;
-            let (w, mut g) = self.kernel.at(square);
-            if SPLIT {
-                let (other_x, other_y) = gather(self.gradient_positions);
-                (x, y) = self.space.shortest(own.1.0 - other_x, own.1.1 - other_y);
-                square = x * x + y * y;
-                g = self.kernel.at(square).1;
-            }
-            let mut norm = g * g * square;
-            if WEIGHTED {
-                // SAFETY: as above.
-                norm = norm * unsafe { F::gather(self.weights.as_ptr().add(base), entries) };
-            }
-            // Padding lies at distance zero: its W must be cleared, its gradient is zero anyway.
-            [counted(w), g * x, g * y, norm]
-        }
     }
 }

@@ -1,9 +1,8 @@
 //! Passes over scalar fields: the gradient of differences, and the Laplacian.
 
-use super::{Pairs, Pass, Weights, in_space, rows_if};
+use super::{Pairs, Pass, Rows, Weights, in_space};
 use crate::kernel::Shape;
 use crate::math::{Real, Vector};
-use crate::neighbors::NeighborList;
 use crate::simd::Number;
 use crate::simd::space::Space;
 
@@ -45,26 +44,27 @@ struct Gradient<'a, K, S> {
 }
 
 impl<K: Shape, S: Space> Pass<2> for Gradient<'_, K, S> {
-    fn row(&self, list: &NeighborList, row: usize) -> [Real; 2] {
-        let [mut sum_x, mut sum_y] = [0.0; 2];
-        list.for_each(row, |j| {
-            let apart = self.positions[row] - self.positions[j];
-            let (x, y) = self.space.shortest(apart.x, apart.y);
-            let factor = self.kernel.at(x * x + y * y).1 * (self.field[j] - self.field[row]);
-            sum_x += factor * x;
-            sum_y += factor * y;
-        });
-        self.finish([sum_x, sum_y])
+    /// Position and field value.
+    type Own<M: Number> = (M, M, M);
+
+    #[inline(always)]
+    fn own<R: Rows>(&self, rows: R) -> Self::Own<R::Value> {
+        let (x, y) = rows.vectors(self.positions);
+        (x, y, rows.numbers(self.field))
+    }
+
+    #[inline(always)]
+    fn terms<R: Rows>(&self, own: &Self::Own<R::Value>, others: R) -> [R::Value; 2] {
+        let (other_x, other_y, other) = self.own(others);
+        let (x, y) = self.space.shortest(own.0 - other_x, own.1 - other_y);
+        let factor = self.kernel.at(x * x + y * y).1 * (other - own.2);
+        [factor * x, factor * y]
     }
 
     #[inline(always)]
     fn finish<M: Number>(&self, [x, y]: [M; 2]) -> [M; 2] {
         let slope = x.like(self.kernel.slope_scale());
         [x * slope, y * slope]
-    }
-
-    fn shortest_column(&self) -> usize {
-        self.positions.len().min(self.field.len())
     }
 }
 
@@ -79,114 +79,28 @@ struct Laplacian<'a, K, S, const WEIGHTED: bool> {
 }
 
 impl<K: Shape, S: Space, const WEIGHTED: bool> Pass<1> for Laplacian<'_, K, S, WEIGHTED> {
-    fn row(&self, list: &NeighborList, row: usize) -> [Real; 1] {
-        let mut sum = 0.0;
-        list.for_each(row, |j| {
-            let apart = self.positions[row] - self.positions[j];
-            let (x, y) = self.space.shortest(apart.x, apart.y);
-            let mut g = self.kernel.at(x * x + y * y).1;
-            if WEIGHTED {
-                g *= self.weights[j];
-            }
-            sum += g * (self.field[row] - self.field[j]);
-        });
-        self.finish([sum])
+    /// Position and field value.
+    type Own<M: Number> = (M, M, M);
+
+    #[inline(always)]
+    fn own<R: Rows>(&self, rows: R) -> Self::Own<R::Value> {
+        let (x, y) = rows.vectors(self.positions);
+        (x, y, rows.numbers(self.field))
+    }
+
+    #[inline(always)]
+    fn terms<R: Rows>(&self, own: &Self::Own<R::Value>, others: R) -> [R::Value; 1] {
+        let (other_x, other_y, other) = self.own(others);
+        let (x, y) = self.space.shortest(own.0 - other_x, own.1 - other_y);
+        let mut g = self.kernel.at(x * x + y * y).1;
+        if WEIGHTED {
+            g = g * others.numbers(self.weights);
+        }
+        [g * (own.2 - other)]
     }
 
     #[inline(always)]
     fn finish<M: Number>(&self, [sum]: [M; 1]) -> [M; 1] {
         [sum * sum.like(self.kernel.slope_scale() * self.factor)]
-    }
-
-    fn shortest_column(&self) -> usize {
-        self.positions.len().min(self.field.len()).min(rows_if(WEIGHTED, self.weights))
-    }
-}
-
-#[cfg(not(feature = "f64"))]
-mod lanes {
-    use super::super::run::LanePass;
-    use super::*;
-    use crate::simd::lanes::{ColumnPair, Entry, Turn};
-
-    /// Position and field value.
-    ///
-    /// # Safety
-    /// As for [`Turn::gather`], in both columns.
-    #[allow(unsafe_code)]
-    #[inline(always)]
-    unsafe fn gather_both<F: Turn, E: Entry>(
-        positions: &[Vector],
-        field: &[Real],
-        base: usize,
-        entries: &ColumnPair<E>,
-    ) -> (F, F, F) {
-        // SAFETY: passed on to the caller.
-        unsafe {
-            let (x, y) = F::gather_vectors(positions.as_ptr().add(base), entries);
-            (x, y, F::gather(field.as_ptr().add(base), entries))
-        }
-    }
-
-    #[allow(unsafe_code)]
-    impl<K: Shape, S: Space> LanePass<2> for Gradient<'_, K, S> {
-        /// Position and field value.
-        type Own<F: Turn> = (F, F, F);
-
-        #[inline(always)]
-        unsafe fn own<F: Turn>(&self, base: usize, entries: &ColumnPair<i16>) -> Self::Own<F> {
-            // SAFETY: the caller vouches that all rows are within the columns.
-            unsafe { gather_both(self.positions, self.field, base, entries) }
-        }
-
-        #[inline(always)]
-        unsafe fn terms<F: Turn, E: Entry>(
-            &self,
-            own: &Self::Own<F>,
-            base: usize,
-            entries: &ColumnPair<E>,
-            _counted: impl Fn(F) -> F,
-        ) -> [F; 2] {
-            // SAFETY: the caller vouches that all rows are within the columns.
-            let (other_x, other_y, other): Self::Own<F> =
-                unsafe { gather_both(self.positions, self.field, base, entries) };
-            let (x, y) = self.space.shortest(own.0 - other_x, own.1 - other_y);
-            let factor = self.kernel.at(x * x + y * y).1 * (other - own.2);
-            // Padding lies at distance zero and adds nothing.
-            [factor * x, factor * y]
-        }
-    }
-
-    #[allow(unsafe_code)]
-    impl<K: Shape, S: Space, const WEIGHTED: bool> LanePass<1> for Laplacian<'_, K, S, WEIGHTED> {
-        /// Position and field value.
-        type Own<F: Turn> = (F, F, F);
-
-        #[inline(always)]
-        unsafe fn own<F: Turn>(&self, base: usize, entries: &ColumnPair<i16>) -> Self::Own<F> {
-            // SAFETY: the caller vouches that all rows are within the columns.
-            unsafe { gather_both(self.positions, self.field, base, entries) }
-        }
-
-        #[inline(always)]
-        unsafe fn terms<F: Turn, E: Entry>(
-            &self,
-            own: &Self::Own<F>,
-            base: usize,
-            entries: &ColumnPair<E>,
-            _counted: impl Fn(F) -> F,
-        ) -> [F; 1] {
-            // SAFETY: the caller vouches that all rows are within the columns.
-            let (other_x, other_y, other): Self::Own<F> =
-                unsafe { gather_both(self.positions, self.field, base, entries) };
-            let (x, y) = self.space.shortest(own.0 - other_x, own.1 - other_y);
-            let mut g = self.kernel.at(x * x + y * y).1;
-            if WEIGHTED {
-                // SAFETY: as above.
-                g = g * unsafe { F::gather(self.weights.as_ptr().add(base), entries) };
-            }
-            // Padding has no difference of its own and adds nothing.
-            [g * (own.2 - other)]
-        }
     }
 }

@@ -1,21 +1,19 @@
 //! The passes over all pairs of neighbours. They take most of the time of a step.
 //!
-//! Each pass is one function over plain columns. It picks the widest instruction set of the machine
-//! once per chunk of rows and works on eight rows at a time, straight from the blocks of the
-//! [`NeighborList`]. Beside its lane form every pass has a scalar form, which defines its result:
-//! all forms give the same bits, because none of them fuses or reorders an operation, and square
-//! roots and quotients are exact everywhere. With the `f64` feature only the scalar forms exist.
+//! Each pass is one formula over the values of a row and of its neighbours. It is compiled for one number, which defines
+//! its result, and for the lanes of each instruction set: eight rows at a time, straight from the blocks of the
+//! [`NeighborList`], by the widest set of the machine. All give the same bits, because none of them fuses or reorders an
+//! operation, and square roots and quotients are exact everywhere. In f64 only the form for one number exists.
 //!
 //! In the formulas x_ij = x_i - x_j (the shortest image of it), W is the kernel and grad W = g x_ij
 //! its gradient at x_i. A row's own contribution W(0) is left out.
-//!
-//! One file per family of passes: the scalar form that defines it, and the lane form beside it.
 
 mod correction;
 mod density;
 mod fields;
 mod records;
 mod repulsion;
+mod rows;
 #[cfg(not(feature = "f64"))]
 mod run;
 mod velocity;
@@ -31,10 +29,8 @@ use crate::math::{Real, Vector};
 use crate::neighbors::NeighborList;
 use crate::parallel::{CHUNK_ROWS, Parallelism};
 use crate::periodic::Periodic;
-use crate::simd::Record;
-use crate::simd::{LANES, Level, Number};
-#[cfg(not(feature = "f64"))]
-use run::LanePass;
+use crate::simd::{LANES, Level, Number, Record};
+use rows::{OneRow, Rows};
 use std::ops::Range;
 
 /// The pairs a pass runs over, and how.
@@ -67,17 +63,17 @@ impl<'a> Pairs<'a> {
     /// under the numbers of its rows in the chunk.
     #[inline]
     #[cfg_attr(not(feature = "f64"), allow(unsafe_code))]
-    fn run_chunk<P: AnyForm<N>, const N: usize>(&self, pass: &P, first: usize, rows: usize, sink: &mut impl Sink<N>) {
+    fn run_chunk<const N: usize>(&self, pass: &impl Pass<N>, first: usize, rows: usize, sink: &mut impl Sink<N>) {
         #[cfg(not(feature = "f64"))]
         if self.level != Level::Scalar {
-            assert!(pass.shortest_column() >= self.list.reach() && first + rows <= self.rows());
+            assert!(first + rows <= self.rows());
             let chunks = &self.list.chunks()[first / CHUNK_ROWS..];
             if let Some(next) = chunks.get(1) {
                 run::prefetch(next);
             }
             // SAFETY: the list takes its entries from row numbers below `reach()`, checked when it was
-            // built, and its own rows are below that too; every column of the pass has as many rows.
-            unsafe { run::run(self.level, pass, &chunks[0], first, rows, sink) };
+            // built, and its own rows are below that too.
+            unsafe { run::run(self.level, pass, &chunks[0], first..first + rows, self.list.reach(), sink) };
             return;
         }
         debug_assert_eq!(first % CHUNK_ROWS, 0);
@@ -85,15 +81,26 @@ impl<'a> Pairs<'a> {
             let valid = LANES.min(rows - block);
             let mut sums = [[0.0; LANES]; N];
             for lane in 0..valid {
-                let row = pass.row(self.list, first + block + lane);
+                let row = self.sum_row(pass, first + block + lane);
                 sums.iter_mut().zip(row).for_each(|(lanes, value)| lanes[lane] = value);
             }
             sink.store(block..block + valid, &sums);
         }
     }
 
-    /// Puts the first `rows` rows of two columns side by side for the lane forms; the scalar ones read the columns,
-    /// and where all sleep the records are not read.
+    /// The result of one row, one neighbour after the other.
+    fn sum_row<const N: usize>(&self, pass: &impl Pass<N>, row: usize) -> [Real; N] {
+        let own = pass.own(OneRow { row, from: row });
+        let mut sums = [0.0; N];
+        self.list.for_each(row, |other| {
+            let terms = pass.terms(&own, OneRow { row: other, from: row });
+            sums.iter_mut().zip(terms).for_each(|(sum, term)| *sum += term);
+        });
+        pass.finish(sums)
+    }
+
+    /// Puts the first `rows` rows of two columns side by side for lanes; a single row reads the columns, and
+    /// where all sleep the records are not read.
     fn pack<'r>(&self, records: &'r mut Records, rows: usize, record: impl Fn(usize) -> Record + Sync) -> &'r [Record] {
         if cfg!(feature = "f64") || self.level == Level::Scalar || self.rows() == 0 {
             return &[];
@@ -103,14 +110,14 @@ impl<'a> Pairs<'a> {
         packed
     }
 
-    fn fill<P: AnyForm<1>>(&self, pass: &P, out: &mut [Real]) {
+    fn fill(&self, pass: &impl Pass<1>, out: &mut [Real]) {
         self.check(out.len());
         self.parallelism.chunks(out, |first, out| {
             self.run_chunk(pass, first, out.len(), &mut Scalars(out));
         });
     }
 
-    fn fill_vectors<P: AnyForm<2>>(&self, pass: &P, out: &mut [Vector]) {
+    fn fill_vectors(&self, pass: &impl Pass<2>, out: &mut [Vector]) {
         self.check(out.len());
         self.parallelism.chunks(out, |first, out| {
             self.run_chunk(pass, first, out.len(), &mut Vectors(out));
@@ -122,7 +129,7 @@ impl<'a> Pairs<'a> {
     }
 }
 
-/// Where the results of a chunk go. (Not a closure: those are not inlined into the lane forms.)
+/// Where the results of a chunk go. (Not a closure: those are not inlined into code for an instruction set.)
 pub(super) trait Sink<const N: usize> {
     /// Stores the results of some rows of the chunk.
     fn store(&mut self, rows: Range<usize>, results: &[[Real; LANES]; N]);
@@ -187,34 +194,21 @@ impl<'a> Weights<'a> {
     }
 }
 
-/// Rows of a column that is read only where `used`.
-#[cfg_attr(feature = "f64", allow(dead_code))]
-fn rows_if(used: bool, column: &[Real]) -> usize {
-    if used { column.len() } else { usize::MAX }
-}
+/// A pass that sums `N` numbers per row.
+trait Pass<const N: usize>: Sync {
+    /// The values of a row itself.
+    type Own<M: Number>: Copy;
 
-/// A pass that sums `N` numbers per row: its scalar form.
-pub(super) trait Pass<const N: usize>: Sync {
-    /// The result for one row.
-    fn row(&self, list: &NeighborList, row: usize) -> [Real; N];
+    /// Reads the values of rows.
+    fn own<R: Rows>(&self, rows: R) -> Self::Own<R::Value>;
+
+    /// The contributions of a neighbour of each row to the sums. A lane without a neighbour repeats its own row: what is
+    /// not zero there must be cleared by [`Rows::counted`].
+    fn terms<R: Rows>(&self, own: &Self::Own<R::Value>, others: R) -> [R::Value; N];
 
     /// The result of a row from its sums.
     fn finish<M: Number>(&self, sums: [M; N]) -> [M; N];
-
-    /// Rows that every column it reads has.
-    #[cfg_attr(feature = "f64", allow(dead_code))]
-    fn shortest_column(&self) -> usize;
 }
-
-/// A pass in all forms this build has.
-#[cfg(not(feature = "f64"))]
-trait AnyForm<const N: usize>: LanePass<N> {}
-#[cfg(not(feature = "f64"))]
-impl<P: LanePass<N>, const N: usize> AnyForm<N> for P {}
-#[cfg(feature = "f64")]
-trait AnyForm<const N: usize>: Pass<N> {}
-#[cfg(feature = "f64")]
-impl<P: Pass<N>, const N: usize> AnyForm<N> for P {}
 
 /// Runs an expression with `space` for the domain of `pairs`.
 macro_rules! in_space {

@@ -8,7 +8,7 @@ use crate::simd::Record;
 pub struct Records(Vec<Record>);
 
 impl Records {
-    /// Memory held [bytes].
+    /// Memory held \[bytes].
     pub fn memory_bytes(&self) -> usize {
         held(&self.0)
     }

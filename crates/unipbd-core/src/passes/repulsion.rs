@@ -1,12 +1,11 @@
 //! A repulsion of close pairs.
 
-use super::{Pairs, Pass, Weights, in_space, rows_if};
+use super::{Pairs, Pass, Rows, Weights, in_space};
 use crate::math::{Real, Vector};
-use crate::neighbors::NeighborList;
 use crate::simd::Number;
 use crate::simd::space::Space;
 
-/// Distances between which a repulsion grows as a pair comes closer [m].
+/// Distances between which a repulsion grows as a pair comes closer \[m].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reach {
     /// Below this it grows no more: a pair that is thrown together must not be thrown apart.
@@ -55,79 +54,31 @@ impl<S, const WEIGHTED: bool> Repulsion<'_, S, WEIGHTED> {
 }
 
 impl<S: Space, const WEIGHTED: bool> Pass<2> for Repulsion<'_, S, WEIGHTED> {
-    fn row(&self, list: &NeighborList, row: usize) -> [Real; 2] {
-        let [mut sum_x, mut sum_y] = [0.0; 2];
-        list.for_each(row, |j| {
-            let apart = self.positions[row] - self.positions[j];
-            let (x, y) = self.space.shortest(apart.x, apart.y);
-            let square = x * x + y * y;
-            let overlap = self.overlap(square);
-            let push = if WEIGHTED { overlap * self.weights[j] } else { overlap };
-            let (push_x, push_y) = Self::along(x, y, square, push, if row < j { -1.0 } else { 1.0 });
-            sum_x += push_x;
-            sum_y += push_y;
-        });
-        self.finish([sum_x, sum_y])
+    /// Position, and order of the row.
+    type Own<M: Number> = (M, M, M);
+
+    #[inline(always)]
+    fn own<R: Rows>(&self, rows: R) -> Self::Own<R::Value> {
+        let (x, y) = rows.vectors(self.positions);
+        (x, y, rows.order())
+    }
+
+    #[inline(always)]
+    fn terms<R: Rows>(&self, own: &Self::Own<R::Value>, others: R) -> [R::Value; 2] {
+        let (other_x, other_y, order) = self.own(others);
+        let (x, y) = self.space.shortest(own.0 - other_x, own.1 - other_y);
+        let square = x * x + y * y;
+        let mut push = others.counted(self.overlap(square));
+        if WEIGHTED {
+            push = push * others.numbers(self.weights);
+        }
+        let (push_x, push_y) = Self::along(x, y, square, push, own.2.where_below(order, x.like(-1.0), x.like(1.0)));
+        [push_x, push_y]
     }
 
     #[inline(always)]
     fn finish<M: Number>(&self, [x, y]: [M; 2]) -> [M; 2] {
         let factor = x.like(self.factor);
         [x * factor, y * factor]
-    }
-
-    fn shortest_column(&self) -> usize {
-        self.positions.len().min(rows_if(WEIGHTED, self.weights))
-    }
-}
-
-#[cfg(not(feature = "f64"))]
-mod lanes {
-    use super::super::run::LanePass;
-    use super::*;
-    use crate::simd::lanes::{ColumnPair, Entry, Turn};
-
-    /// The entries as numbers.
-    #[inline(always)]
-    fn offsets<E: Entry>([first, second]: &ColumnPair<E>) -> ColumnPair<f32> {
-        [first.map(|entry| entry.offset() as f32), second.map(|entry| entry.offset() as f32)]
-    }
-
-    #[allow(unsafe_code)]
-    impl<S: Space, const WEIGHTED: bool> LanePass<2> for Repulsion<'_, S, WEIGHTED> {
-        /// Position, and offset in the block.
-        type Own<F: Turn> = (F, F, F);
-
-        #[inline(always)]
-        unsafe fn own<F: Turn>(&self, base: usize, entries: &ColumnPair<i16>) -> Self::Own<F> {
-            // SAFETY: the caller vouches that all rows are within the columns.
-            unsafe {
-                let (x, y) = F::gather_vectors(self.positions.as_ptr().add(base), entries);
-                (x, y, F::load(&offsets(entries)))
-            }
-        }
-
-        #[inline(always)]
-        unsafe fn terms<F: Turn, E: Entry>(
-            &self,
-            own: &Self::Own<F>,
-            base: usize,
-            entries: &ColumnPair<E>,
-            counted: impl Fn(F) -> F,
-        ) -> [F; 2] {
-            // SAFETY: the caller vouches that all rows are within the columns.
-            let ((other_x, other_y), offset) =
-                unsafe { (F::gather_vectors(self.positions.as_ptr().add(base), entries), F::load(&offsets(entries))) };
-            let (x, y) = self.space.shortest(own.0 - other_x, own.1 - other_y);
-            let square = x * x + y * y;
-            let mut push = counted(self.overlap(square));
-            if WEIGHTED {
-                // SAFETY: as above.
-                push = push * unsafe { F::gather(self.weights.as_ptr().add(base), entries) };
-            }
-            let order = own.2.where_below(offset, x.like(-1.0), x.like(1.0));
-            let (push_x, push_y) = Self::along(x, y, square, push, order);
-            [push_x, push_y]
-        }
     }
 }

@@ -1,4 +1,4 @@
-//! Lanes of f32: eight rows, and eight rows by two columns, which the lane forms of the passes are written in.
+//! Lanes of f32: eight rows, and eight rows by two columns, which passes run in.
 #![allow(unsafe_code)]
 
 use super::LANES;

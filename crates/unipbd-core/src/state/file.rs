@@ -39,6 +39,21 @@ impl State {
     ///
     /// # Errors
     /// [`StateError`] if the bytes are of another format or version, or damaged.
+    ///
+    /// ```
+    /// # use unipbd_core::{BuildOptions, scene::*};
+    /// # use unipbd_core::State;
+    /// # let water = vec![Liquid::new("water", 1000.0)];
+    /// # let block = vec![Block::new("water", [0.0, 0.0], [1.0, 0.4])];
+    /// # let tank = vec![Tank { name: "pool".into(), ..Tank::new([0.0, 0.0], [1.0, 1.0]) }];
+    /// # let scene = Scene { spacing: 0.05, liquid: water, block, tank, ..Scene::default() };
+    /// let mut solver = scene.build(BuildOptions::default())?;
+    /// let bytes = solver.save().to_bytes(); // what a file holds
+    /// let state = State::from_bytes(&bytes)?;
+    /// solver.restore(&state)?;
+    /// assert!(State::from_bytes(&bytes[1..]).is_err());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn from_bytes(bytes: &[u8]) -> Result<State, StateError> {
         let rest = bytes.strip_prefix(MAGIC).ok_or(StateError::NotAState)?;
         let found = Reader(rest).value::<u32>()?;

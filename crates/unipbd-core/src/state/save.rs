@@ -22,6 +22,22 @@ impl Solver {
     /// The complete state needed to continue this run. The run is not changed.
     ///
     /// Reports of the run are not included (pending events, timings).
+    ///
+    /// ```
+    /// # use unipbd_core::{BuildOptions, scene::*};
+    /// # let water = vec![Liquid::new("water", 1000.0)];
+    /// # let block = vec![Block::new("water", [0.0, 0.0], [1.0, 0.4])];
+    /// # let tank = vec![Tank { name: "pool".into(), ..Tank::new([0.0, 0.0], [1.0, 1.0]) }];
+    /// # let scene = Scene { spacing: 0.05, liquid: water, block, tank, ..Scene::default() };
+    /// let mut solver = scene.build(BuildOptions::default())?;
+    /// let start = solver.save();
+    /// solver.step_frame()?;
+    /// let hash = solver.state_hash();
+    /// solver.restore(&start)?;
+    /// solver.step_frame()?;
+    /// assert_eq!(solver.state_hash(), hash); // bit for bit the same
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn save(&self) -> State {
         let parts = &self.world.parts;
         let mut sections = Vec::new();

@@ -141,6 +141,22 @@ impl Solver {
     /// bodies are [`Body::fluid_force`](crate::rigid::Body::fluid_force) and
     /// [`contact_force`](crate::rigid::Body::contact_force). Those of fluids are zero before the first frame and after a
     /// restore.
+    ///
+    /// ```
+    /// # use unipbd_core::{BuildOptions, scene::*};
+    /// # let water = vec![Liquid::new("water", 1000.0)];
+    /// # let block = vec![Block::new("water", [0.0, 0.0], [1.0, 0.4])];
+    /// # let tank = vec![Tank { name: "pool".into(), ..Tank::new([0.0, 0.0], [1.0, 1.0]) }];
+    /// # let scene = Scene { spacing: 0.05, liquid: water, block, tank, ..Scene::default() };
+    /// let mut solver = scene.build(BuildOptions::default())?;
+    /// while solver.time() < 1.0 {
+    ///     solver.step_frame()?;
+    /// }
+    /// let floor = &solver.wall_forces().into_iter().find(|wall| wall.name == "pool bottom").expect("its name");
+    /// let weight = 1000.0 * 0.4 * 9.81; // 0.4 m^2 of water
+    /// assert!((-floor.force.y / weight - 1.0).abs() < 0.05);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn wall_forces(&self) -> Vec<WallForce> {
         self.world.wall_forces()
     }

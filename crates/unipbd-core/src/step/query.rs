@@ -84,12 +84,46 @@ impl Solver {
 
     /// Takes the contacts that began and ended since the last call, sensors included; empty unless contacts are
     /// [watched](Solver::watch_contacts).
+    ///
+    /// ```
+    /// # use unipbd_core::{BuildOptions, scene::*};
+    /// # let scene = Scene {
+    /// #     spacing: 0.1,
+    /// #     half_plane: vec![HalfPlane::new([0.0, 0.0], [0.0, 1.0])],
+    /// #     body: vec![BodyDescription::rectangle([1.0, 1.0], [0.0, 1.0])],
+    /// #     ..Scene::default()
+    /// # };
+    /// let mut solver = scene.build(BuildOptions::default())?;
+    /// solver.watch_contacts(true);
+    /// while solver.time() < 1.0 {
+    ///     solver.step_frame()?;
+    /// }
+    /// let landed = solver.take_contact_events();
+    /// assert!(landed.iter().any(|event| event.began && event.body == 0 && event.other.is_none()));
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn take_contact_events(&mut self) -> Vec<ContactEvent> {
         self.world.parts.rigid.as_mut().map_or_else(Vec::new, |rigid| rigid.contacts.take_events())
     }
 
     /// Poses of the centres of mass of all bodies between the last two frames, to draw more pictures than frames:
     /// `part` is 0 at the start of the last frame and 1 at its end.
+    ///
+    /// ```
+    /// # use unipbd_core::{BuildOptions, scene::*};
+    /// # let scene = Scene {
+    /// #     spacing: 0.1,
+    /// #     half_plane: vec![HalfPlane::new([0.0, 0.0], [0.0, 1.0])],
+    /// #     body: vec![BodyDescription::rectangle([1.0, 1.0], [0.0, 1.0])],
+    /// #     ..Scene::default()
+    /// # };
+    /// let mut solver = scene.build(BuildOptions::default())?;
+    /// solver.step_frame()?;
+    /// // Half of the way from the frame before to the last one, for a display of another rate.
+    /// let between = solver.interpolated_poses(0.5);
+    /// assert!(between[0].position.y > solver.bodies()[0].position.y);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn interpolated_poses(&self, part: f64) -> Vec<Pose> {
         self.world.parts.rigid.as_ref().map_or_else(Vec::new, |rigid| rigid.bodies.interpolated(part))
     }
@@ -173,6 +207,22 @@ impl<'a> Query<'a> {
 
     /// The solid whose outline is nearest to a point, no farther than `within` [m]; one that holds the point counts as
     /// nearest.
+    ///
+    /// ```
+    /// # use unipbd_core::{BuildOptions, scene::*};
+    /// # use unipbd_core::Vector64;
+    /// # let scene = Scene {
+    /// #     spacing: 0.1,
+    /// #     half_plane: vec![HalfPlane::new([0.0, 0.0], [0.0, 1.0])],
+    /// #     body: vec![BodyDescription::rectangle([1.0, 1.0], [0.0, 1.0])],
+    /// #     ..Scene::default()
+    /// # };
+    /// let solver = scene.build(BuildOptions::default())?;
+    /// let found = solver.query().without_walls().nearest(Vector64::new(3.0, 1.0), 5.0).expect("a box");
+    /// assert!((found.distance - 2.5).abs() < 1e-6);
+    /// assert!(solver.query().nearest(Vector64::new(3.0, 9.0), 0.5).is_none());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn nearest(self, point: Vector64, within: f64) -> Option<NearestSolid> {
         let near = |(solid, outline): (Solid, Outline)| {
             let found = outline.nearest(point);

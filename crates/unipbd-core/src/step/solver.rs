@@ -41,6 +41,19 @@ impl Solver {
     ///
     /// # Errors
     /// [`SolverError::Diverged`] when a particle is absurdly fast or its velocity not finite.
+    ///
+    /// ```
+    /// # use unipbd_core::{BuildOptions, scene::*};
+    /// # let water = vec![Liquid::new("water", 1000.0)];
+    /// # let block = vec![Block::new("water", [0.0, 0.0], [1.0, 0.4])];
+    /// # let tank = vec![Tank { name: "pool".into(), ..Tank::new([0.0, 0.0], [1.0, 1.0]) }];
+    /// # let scene = Scene { spacing: 0.05, liquid: water, block, tank, ..Scene::default() };
+    /// let mut solver = scene.build(BuildOptions::default())?;
+    /// let report = solver.step_frame()?;
+    /// assert!(report.substeps >= 1);
+    /// assert_eq!(solver.positions().len(), solver.velocities().len());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn step_frame(&mut self) -> Result<FrameReport, SolverError> {
         self.on_threads(World::frame)
     }
@@ -102,6 +115,34 @@ impl Solver {
     /// Adds a velocity pass behind those of the scene. The stages are planned anew.
     ///
     /// A saved state holds no added effect: add it again after a restore.
+    ///
+    /// ```
+    /// # use unipbd_core::{BuildOptions, scene::*};
+    /// # use unipbd_core::{constraints::{Needs, Substep}, effects::{Changes, Effect}};
+    /// # let water = vec![Liquid::new("water", 1000.0)];
+    /// # let block = vec![Block::new("water", [0.0, 0.0], [1.0, 0.4])];
+    /// # let tank = vec![Tank { name: "pool".into(), ..Tank::new([0.0, 0.0], [1.0, 1.0]) }];
+    /// # let scene = Scene { spacing: 0.05, liquid: water, block, tank, ..Scene::default() };
+    /// /// Air that carries everything along x.
+    /// struct Wind;
+    ///
+    /// impl Effect for Wind {
+    ///     fn name(&self) -> &'static str {
+    ///         "wind"
+    ///     }
+    ///     fn needs(&self) -> Needs {
+    ///         Needs::default()
+    ///     }
+    ///     fn apply(&mut self, now: Substep<'_>, out: &mut Changes) {
+    ///         out.velocity.iter_mut().for_each(|change| change.x += 2.0 * now.dt);
+    ///     }
+    /// }
+    /// let mut solver = scene.build(BuildOptions::default())?;
+    /// solver.add_effect(Box::new(Wind));
+    /// solver.step_frame()?;
+    /// assert!(solver.diagnostics().momentum.x > 0.0);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn add_effect(&mut self, effect: Box<dyn Effect>) {
         // It may move sleeping liquid.
         self.on_threads(World::wake_for_good);
@@ -128,6 +169,21 @@ impl Solver {
     ///
     /// Takes time proportional to the number of particles; for many lookups go once through
     /// [`ids`](Solver::ids).
+    ///
+    /// ```
+    /// # use unipbd_core::{BuildOptions, scene::*};
+    /// # let water = vec![Liquid::new("water", 1000.0)];
+    /// # let block = vec![Block::new("water", [0.0, 0.0], [1.0, 0.4])];
+    /// # let tank = vec![Tank { name: "pool".into(), ..Tank::new([0.0, 0.0], [1.0, 1.0]) }];
+    /// # let scene = Scene { spacing: 0.05, liquid: water, block, tank, ..Scene::default() };
+    /// let mut solver = scene.build(BuildOptions::default())?;
+    /// let id = solver.ids()[0];
+    /// solver.step_frame()?;
+    /// let row = solver.row_of(id).expect("nothing removes particles here");
+    /// let place = solver.positions()[row]; // where the same particle is now
+    /// # assert!(place.is_finite());
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
     pub fn row_of(&self, id: u32) -> Option<usize> {
         self.ids().iter().position(|&other| other == id)
     }
