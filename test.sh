@@ -45,7 +45,13 @@ logs() {
     for scene in open_gas dam_break; do
         cargo run --quiet -p unipbd-cli -- "scenes/$scene.toml" -o "$out/$scene.mcap" --force || return 1
     done
-    "$python" tests/python/check_log.py "$out/open_gas.mcap" "$out/dam_break.mcap"
+    "$python" tests/python/check_log.py "$out/open_gas.mcap" "$out/dam_break.mcap" || return 1
+    [ -n "$full" ] || return 0
+    # What the viewer shows of scenes with gas, liquids, bodies and heaps.
+    for scene in floating_bodies everything pyramid; do
+        cargo run --quiet -p unipbd-cli -- "scenes/$scene.toml" -o "$out/$scene.mcap" --force || return 1
+    done
+    "$python" tests/python/check_view.py "$out"/{open_gas,dam_break,floating_bodies,everything,pyramid}.mcap
 }
 
 # Pages that play a run, in a headless browser from the npm registry.

@@ -8,6 +8,8 @@ pub mod export;
 pub mod instruction_set;
 mod interrupt;
 pub mod layout;
+#[cfg(feature = "live")]
+pub mod live;
 pub mod read;
 pub mod record;
 pub mod render;

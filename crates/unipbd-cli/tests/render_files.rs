@@ -84,7 +84,7 @@ fn read_gif(path: &Path) -> Vec<(Vec<[u8; 3]>, u16)> {
 fn a_png_reads_back_as_the_picture() {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.png");
-    write_png(&path, &picture(0.3)).unwrap();
+    write_png(&path, &picture(0.3), "").unwrap();
     assert_eq!(read_png(&path), picture(0.3).to_rgb());
 }
 

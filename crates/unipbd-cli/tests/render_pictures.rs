@@ -4,7 +4,7 @@ use std::sync::LazyLock;
 
 use unipbd_cli::render::color::Rgb;
 use unipbd_cli::render::{
-    Background, ColorBy, Image, Range, RenderError, RenderOptions, Renderer, Style, Survey, TimeStamp, View,
+    Background, ColorBy, Image, Range, RenderError, RenderOptions, Renderer, Style, Survey, TimeStamp, Vectors, View,
 };
 use unipbd_cli::snapshot::{Setting, Snapshot};
 use unipbd_core::math::Vector64;
@@ -118,6 +118,51 @@ fn particles_outside_the_view_or_not_finite_leave_no_trace() {
             assert!((0..400).all(|y| (0..400).all(|x| image.pixel(x, y).unwrap() == empty())));
         }
     }
+}
+
+#[test]
+fn gas_and_smoke_end_at_a_closed_wall_and_go_on_past_an_open_one() {
+    let corners = [[0.25, 0.25], [0.75, 0.25], [0.75, 0.75], [0.25, 0.75]].map(Vector64::from).to_vec();
+    let reaches = |phase: Phase, closed: bool| {
+        let walls = vec![WallOutline { points: corners.clone(), closed, endless: false }];
+        let rows = vec![([0.255, 0.5], phase, if phase == Phase::Gas { 3 } else { 2 }); 5];
+        let image = draw(&Setting { walls, ..setting() }, options(), &particles(&rows));
+        assert_ne!(at(&image, 0.27, 0.5), empty(), "it shows inside");
+        at(&image, 0.225, 0.5) != empty()
+    };
+    for phase in [Phase::Gas, Phase::Smoke] {
+        // The last of four corners is open to the first: nothing is known of what it surrounds.
+        assert_eq!((reaches(phase, true), reaches(phase, false)), (false, true), "{phase:?}");
+    }
+}
+
+#[test]
+fn arrows_point_where_particles_go_and_the_longest_is_what_was_asked_for() {
+    let mut frame = particles(&[([0.5, 0.5], Phase::Liquid, 0)]);
+    frame.velocities = Some(vec![[2.0, 0.0]]);
+    let arrows = |longest: f64| {
+        let options = RenderOptions { longest_vector: Some(longest), ..options() };
+        let plain = draw(&setting(), options.clone(), &frame);
+        let image = draw(&setting(), RenderOptions { vectors: Some(Vectors::Velocity), ..options }, &frame);
+        // Columns in the row of the particle that the arrow changes.
+        let changed = (0..400).filter(|x| image.pixel(*x, 200) != plain.pixel(*x, 200)).collect::<Vec<_>>();
+        (changed[0], changed[changed.len() - 1])
+    };
+    let (from, to) = arrows(2.0);
+    let (_, half) = arrows(4.0);
+    // A square with one arrow is two spacings wide here, 40 pixels; the longest arrow is 1.5 of that.
+    assert!((196..=201).contains(&from) && (257..=262).contains(&to), "{from} to {to}");
+    assert!((227..=232).contains(&half), "{half}");
+}
+
+#[test]
+fn arrows_without_their_numbers_are_refused() {
+    let refused = |vectors| {
+        let options = RenderOptions { vectors: Some(vectors), ..options() };
+        Renderer::new(&setting(), options).draw(&particles(&[])).unwrap_err().to_string()
+    };
+    assert!(refused(Vectors::Velocity).contains("--fields velocity"));
+    assert!(refused(Vectors::Force).contains("bodies"));
 }
 
 #[test]

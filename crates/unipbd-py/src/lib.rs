@@ -10,6 +10,7 @@ mod edit;
 mod errors;
 mod group;
 mod hook;
+mod live;
 mod log;
 mod order;
 mod particles;
@@ -60,6 +61,10 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(query::ray_cast, module)?)?;
     module.add_function(wrap_pyfunction!(query::bodies_in, module)?)?;
     module.add_function(wrap_pyfunction!(query::nearest, module)?)?;
+    module.add_function(wrap_pyfunction!(live::start_live, module)?)?;
+    module.add_function(wrap_pyfunction!(live::live_viewers, module)?)?;
+    module.add_function(wrap_pyfunction!(live::hold_live, module)?)?;
+    module.add_function(wrap_pyfunction!(live::stop_live, module)?)?;
     module.add_function(wrap_pyfunction!(command::run_command, module)?)?;
     module.add_function(wrap_pyfunction!(command::thread_count, module)?)?;
     Ok(())

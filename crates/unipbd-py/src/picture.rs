@@ -63,7 +63,7 @@ fn draw<T: Send>(py: Python<'_>, world: &World, look: &Look, take: impl FnOnce(&
 
 /// The picture as the bytes of a PNG file.
 pub fn png(py: Python<'_>, world: &World, look: &Look) -> PyResult<Vec<u8>> {
-    draw(py, world, look, png_bytes)
+    draw(py, world, look, |image| png_bytes(image, ""))
 }
 
 /// The picture as an array (height, width, 3).

@@ -3,7 +3,7 @@ use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
-use unipbd_cli::record::{Fields, Header, Recorder as LogRecorder};
+use unipbd_cli::record::{Fields, Recorder as LogRecorder};
 
 use crate::errors;
 use crate::solver::Solver;
@@ -24,18 +24,7 @@ impl Recorder {
         let fields: Fields = fields
             .parse()
             .map_err(|error: unipbd_cli::record::UnknownField| PyValueError::new_err(error.to_string()))?;
-        let header = {
-            let world = simulation.lock(py)?;
-            Header {
-                setting: world.setting(),
-                scene_text: world.scene_text(py)?,
-                overrides: Vec::new(),
-                seed: world.running.solver.seed(),
-                fps,
-                gravity: world.scene.gravity,
-                gauges: world.scene.gauge.iter().map(|gauge| gauge.name.clone()).collect(),
-            }
-        };
+        let header = simulation.lock(py)?.header(py, fps)?;
         let recorder = LogRecorder::create(&path, &header, fields).map_err(|error| errors::record(py, &error))?;
         Ok(Recorder { fields, recorder: Mutex::new(Some(recorder)) })
     }

@@ -77,6 +77,8 @@ impl Solver {
         let world = World {
             running,
             scene,
+            live: None,
+            untold: Vec::new(),
             unrecorded: Vec::new(),
             has_groups: false,
             failure: Failure::default(),
@@ -105,7 +107,8 @@ impl Solver {
     /// What happened since the last call: (time, severity, message).
     fn take_events(&self, py: Python<'_>) -> PyResult<Vec<(f64, &'static str, String)>> {
         let mut world = self.lock(py)?;
-        let events = world.running.solver.take_events();
+        let mut events = std::mem::take(&mut world.untold);
+        events.extend(world.running.solver.take_events());
         world.unrecorded.extend(events.iter().cloned());
         Ok(events.into_iter().map(|event| (event.time, severity(event.severity), event.message)).collect())
     }

@@ -82,8 +82,9 @@ impl World {
             let done = py.detach(|| {
                 let begin = Instant::now();
                 let mut done = 0;
-                while done < left {
+                while done < left && self.is_due() {
                     self.frame(hooks)?;
+                    self.show();
                     done += 1;
                     if begin.elapsed() > DEAF {
                         break;

@@ -3,6 +3,8 @@
 use std::path::Path;
 
 use pyo3::prelude::*;
+use unipbd_cli::live::Live;
+use unipbd_cli::record::Header;
 use unipbd_cli::simulation::Simulation;
 use unipbd_cli::snapshot::Setting;
 use unipbd_core::observe::{Event, Severity};
@@ -15,6 +17,10 @@ use crate::{errors, order};
 pub struct World {
     pub running: Simulation,
     pub scene: CheckedScene,
+    /// Viewers that watch.
+    pub live: Option<Live>,
+    /// Events that viewers have, and Python does not.
+    pub untold: Vec<Event>,
     /// Events that no log has yet.
     pub unrecorded: Vec<Event>,
     pub has_groups: bool,
@@ -27,6 +33,19 @@ impl World {
     /// What stays the same over the run.
     pub fn setting(&self) -> Setting {
         self.running.setting(&self.scene, Path::new("simulation"))
+    }
+
+    /// What a log with this many frames per second [1/s] says once.
+    pub fn header(&self, py: Python<'_>, fps: f64) -> PyResult<Header> {
+        Ok(Header {
+            setting: self.setting(),
+            scene_text: self.scene_text(py)?,
+            overrides: Vec::new(),
+            seed: self.running.solver.seed(),
+            fps,
+            gravity: self.scene.gravity,
+            gauges: self.scene.gauge.iter().map(|gauge| gauge.name.clone()).collect(),
+        })
     }
 
     /// The scene as TOML text.

@@ -2,6 +2,8 @@
 
 mod bench;
 mod dispatch;
+#[cfg(feature = "live")]
+mod live;
 mod logs;
 mod plot;
 mod render;
@@ -18,7 +20,7 @@ pub use bench::BenchArgs;
 pub use dispatch::{is_log, log_is_no_scene, with_default_command};
 pub use logs::{ExportArgs, ExportFormat, LayoutArgs, RecoverArgs};
 pub use plot::PlotArgs;
-pub use render::RenderArgs;
+pub use render::{LookArgs, RenderArgs};
 pub use run::{LogArgs, RunArgs, SceneChanges};
 pub use stop_on::StopCondition;
 

@@ -7,7 +7,7 @@ use clap::builder::{PossibleValuesParser, TypedValueParser};
 
 use super::SceneChanges;
 use super::run::{number, positive, thread_count};
-use crate::render::{Background, ColorBy, Range, Style, View};
+use crate::render::{Background, ColorBy, Range, Style, Vectors, View};
 
 const AFTER_HELP: &str = "\
 Examples:
@@ -33,7 +33,7 @@ pub struct RenderArgs {
     /// MP4 needs ffmpeg.
     #[arg(short, long, value_name = "PATH")]
     pub output: PathBuf,
-    /// Replace an output that exists
+    /// Replace an output that exists; pictures of the same run are replaced without it
     #[arg(long)]
     pub force: bool,
     /// Which frames to draw.
@@ -109,6 +109,12 @@ pub struct LookArgs {
     /// Name the materials and bodies
     #[arg(long)]
     pub legend: bool,
+    /// Draw arrows: mean velocities of particles, or the forces of fluids and of contacts on bodies
+    #[arg(long, value_name = "QUANTITY", value_parser = vectors())]
+    pub vectors: Option<Vectors>,
+    /// What the longest arrow stands for [m/s], [N]; left out, the longest of all but one in fifty
+    #[arg(long, value_name = "NUMBER", requires = "vectors", allow_negative_numbers = true, value_parser = positive)]
+    pub vector_max: Option<f64>,
 }
 
 fn color_by() -> impl TypedValueParser<Value = ColorBy> {
@@ -119,6 +125,11 @@ fn color_by() -> impl TypedValueParser<Value = ColorBy> {
 fn style() -> impl TypedValueParser<Value = Style> {
     let names = PossibleValuesParser::new(["surface", "discs"]);
     names.map(|name| if name == "discs" { Style::Discs } else { Style::Surface })
+}
+
+fn vectors() -> impl TypedValueParser<Value = Vectors> {
+    let names = PossibleValuesParser::new(["velocity", "force"]);
+    names.map(|name| if name == "force" { Vectors::Force } else { Vectors::Velocity })
 }
 
 pub(super) fn background() -> impl TypedValueParser<Value = Background> {

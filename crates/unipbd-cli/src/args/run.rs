@@ -17,6 +17,7 @@ Examples:
   unipbd run scenes/open_gas.toml --threads 4 --duration 2 -o short.mcap --force
   unipbd run my_scene.toml --set liquid.0.xsph=0.02 --set solver.substeps=16
   unipbd run my_scene.toml --stop-on 'density_error>0.05' --stop-on 'time>1.5'
+  unipbd run scenes/water_wheel.toml --live
 
 Exit codes: 0 done, 1 input or output, 2 arguments, 3 scene, 4 diverged, 5 --stop-on met or
 --expect not held, 129 terminal closed, 130 Ctrl-C, 143 SIGTERM.";
@@ -98,6 +99,10 @@ pub struct RunArgs {
     /// The log and what goes into it.
     #[command(flatten)]
     pub log: LogArgs,
+    /// Viewers that watch.
+    #[cfg(feature = "live")]
+    #[command(flatten)]
+    pub live: super::live::LiveArgs,
 }
 
 /// The log of a run.
@@ -120,6 +125,12 @@ pub struct LogArgs {
     /// /bodies/samples.
     #[arg(long, value_name = "FIELDS", default_value = "", hide_default_value = true)]
     pub fields: Fields,
+    /// Write a layout of Lichtblick and Foxglove that frames the scene
+    ///
+    /// With --live it is there from the start, framing the first frame. A layout that unipbd wrote is replaced, another
+    /// file with --force alone.
+    #[arg(long, value_name = "FILE", conflicts_with = "no_record")]
+    pub layout: Option<PathBuf>,
     /// Write no log
     ///
     /// With -q too, and neither --json nor --stop-on, the frames are not measured either: the quickest run.

@@ -8,6 +8,8 @@ mod expect;
 mod export;
 mod info;
 mod layout;
+#[cfg_attr(not(feature = "live"), path = "without_live.rs")]
+mod live;
 mod manual;
 mod plot;
 mod recording;

@@ -10,7 +10,7 @@ use crate::args::PlotArgs;
 use crate::exit::{Exit, Failure};
 use crate::read::Log;
 use crate::record::{is_input, same_file};
-use crate::render::{Curve, Existing, PlotOptions, write_plot};
+use crate::render::{Curve, Existing, Origin, PlotOptions, write_plot};
 use crate::report::format::plural;
 use crate::report::{Console, Form};
 
@@ -25,7 +25,8 @@ pub(super) fn plot(arguments: &PlotArgs, console: Console) -> Result<Exit, Failu
         console.warning(format_args!("{} has nothing to read at any time", curve.name));
     }
     let existing = if arguments.force { Existing::Replace } else { Existing::Keep };
-    let options = PlotOptions { width: arguments.width, background: arguments.background, existing };
+    let origin = Origin::new(&Log::open(&arguments.log)?.header().run_sha256());
+    let options = PlotOptions { width: arguments.width, background: arguments.background, existing, origin };
     write_plot(&curves, options, &path)?;
     match console.form {
         Form::Json => console.object(&serde_json::json!({

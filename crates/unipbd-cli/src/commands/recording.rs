@@ -5,9 +5,10 @@ use std::path::Path;
 
 use unipbd_core::observe::{Diagnostics, Event};
 
+use super::layout::check_free;
 use crate::args::LogArgs;
 use crate::exit::{Exit, Failure};
-use crate::record::{Destination, DestinationError, Existing, Fields, Header, RecordError, Recorder};
+use crate::record::{Destination, DestinationError, Existing, Fields, Header, RecordError, Recorder, same_file};
 use crate::report::summary::LogFile;
 use crate::report::{Console, Form};
 use crate::scene_file::LoadedScene;
@@ -25,6 +26,9 @@ impl Recording {
     pub fn destination(arguments: &LogArgs, scene: &Path, console: Console) -> Result<Option<Destination>, Failure> {
         if arguments.no_record {
             return Ok(None);
+        }
+        if let Some(layout) = &arguments.layout {
+            check_layout(layout, arguments, scene)?;
         }
         if arguments.output.as_deref() == Some(Path::new("-")) {
             return to_standard_output(console).map(Some);
@@ -48,15 +52,7 @@ impl Recording {
         if is_pipe(destination.written()) {
             console.note(format_args!("waiting for somebody to read {}", destination.written().display()));
         }
-        let header = Header {
-            setting: simulation.setting(&loaded.scene, &loaded.path),
-            scene_text: scene_text(loaded),
-            overrides: loaded.overrides.iter().map(ToString::to_string).collect(),
-            seed: simulation.solver.seed(),
-            fps: loaded.scene.fps,
-            gravity: loaded.scene.gravity,
-            gauges: loaded.scene.gauge.iter().map(|gauge| gauge.name.clone()).collect(),
-        };
+        let header = header(simulation, loaded);
         let recorder = match destination.is_standard_output() {
             true => Recorder::to_writer(std::io::stdout(), "standard output".as_ref(), &header, fields),
             false => Recorder::create(destination.written(), &header, fields),
@@ -84,7 +80,32 @@ impl Recording {
         if path != older {
             console.note(format_args!("{} stays; the log of this run is {}", older.display(), path.display()));
         }
-        Ok(LogFile { path, bytes: summary.bytes })
+        Ok(LogFile { path, bytes: summary.bytes, layout: None })
+    }
+}
+
+/// The layout is made of the log, and replaces neither that nor the scene.
+fn check_layout(layout: &Path, arguments: &LogArgs, scene: &Path) -> Result<(), Failure> {
+    if arguments.output.as_deref() == Some(Path::new("-")) {
+        return Err(Failure::usage("--layout needs a log in a file: it reads what has to be framed"));
+    }
+    let log = arguments.output.as_deref().unwrap_or(Path::new(""));
+    if layout == log || same_file(layout, scene) || same_file(layout, log) {
+        return Err(Failure::usage(format!("--layout {} is the scene or the log", layout.display())));
+    }
+    check_free(layout, arguments.force)
+}
+
+/// What the log of a run says once.
+pub(super) fn header(simulation: &Simulation, loaded: &LoadedScene) -> Header {
+    Header {
+        setting: simulation.setting(&loaded.scene, &loaded.path),
+        scene_text: scene_text(loaded),
+        overrides: loaded.overrides.iter().map(ToString::to_string).collect(),
+        seed: simulation.solver.seed(),
+        fps: loaded.scene.fps,
+        gravity: loaded.scene.gravity,
+        gauges: loaded.scene.gauge.iter().map(|gauge| gauge.name.clone()).collect(),
     }
 }
 

@@ -2,15 +2,16 @@
 
 use unipbd_core::BuildOptions;
 
+use super::recording::header;
 use super::scene::{load, threads};
-use crate::args::{RenderArgs, is_log};
+use crate::args::{LookArgs, RenderArgs, is_log};
 use crate::exit::{Exit, Failure};
 use crate::interrupt;
 use crate::read::{Log, LogError};
-use crate::record::{Fields, is_input, same_file};
+use crate::record::{Fields, Header, is_input, same_file};
 use crate::render::{
-    self, Annotations, ColorBy, Existing, Output, Range, RenderError, RenderJob, RenderOptions, Rendered, Speeds,
-    TimeStamp,
+    self, Annotations, ColorBy, Existing, Origin, Output, Range, RenderError, RenderJob, RenderOptions, Rendered,
+    Speeds, TimeStamp, Vectors,
 };
 use crate::report::format::plural;
 use crate::report::{Console, Counter, Form};
@@ -20,13 +21,15 @@ use crate::snapshot::{Setting, Snapshot};
 
 pub(super) fn render(arguments: &RenderArgs, console: Console) -> Result<Exit, Failure> {
     let mut job = job(arguments);
-    refuse_existing(&job)?;
     if same_file(&arguments.source, &arguments.output) {
         return Err(Failure::usage(is_input(&arguments.output)));
     }
     let source = Source::open(arguments)?;
+    let header = source.header();
+    job.origin = Some(Origin::new(&header.run_sha256()));
+    refuse_existing(&job)?;
     interrupt::listen();
-    let setting = source.setting();
+    let setting = header.setting;
     if is_film(&job)? && render::Survey::is_needed(&setting, &job.options) {
         job.options = survey(&source, &setting, &job, console)?;
     }
@@ -52,13 +55,15 @@ fn job(arguments: &RenderArgs) -> RenderJob {
             view: look.view,
             time_stamp: if look.no_time_stamp { TimeStamp::Hidden } else { TimeStamp::Shown },
             annotations: Annotations { axes: look.axes, scale_bar: look.scale_bar, legend: look.legend },
+            vectors: look.vectors,
+            longest_vector: look.vector_max,
         },
         ffmpeg: arguments.ffmpeg.clone(),
         ..RenderJob::new(&arguments.output)
     }
 }
 
-/// Says so before a scene is run for an output that must not be replaced.
+/// Says so before the frames of a scene are made for an output that must not be replaced.
 fn refuse_existing(job: &RenderJob) -> Result<(), Failure> {
     match render::plan_output(&job.output)? {
         Output::Picture(path)
@@ -66,11 +71,7 @@ fn refuse_existing(job: &RenderJob) -> Result<(), Failure> {
         | Output::Pdf(path)
         | Output::Gif(path)
         | Output::Mp4(path)
-        | Output::Replay(path)
-            if job.existing == Existing::Keep && path.symlink_metadata().is_ok() =>
-        {
-            Err(RenderError::Exists(path).into())
-        }
+        | Output::Replay(path) => Ok(job.check_free(&path)?),
         Output::Pictures(_) if job.selection.time.is_some() => {
             Err(Failure::usage("--time asks for one picture: give a single name, such as picture.png"))
         }
@@ -120,7 +121,7 @@ fn announce(rendered: &Rendered, console: Console) -> Result<(), Failure> {
 
 /// Where frames come from.
 enum Source {
-    Log { log: Box<Log>, color: ColorBy },
+    Log { log: Box<Log>, with_velocities: bool },
     Scene { loaded: Box<LoadedScene>, options: BuildOptions, fields: Fields },
 }
 
@@ -128,19 +129,18 @@ impl Source {
     fn open(arguments: &RenderArgs) -> Result<Self, Failure> {
         if is_log(&arguments.source) {
             arguments.changes.refuse_for_log()?;
-            return Ok(Source::Log { log: Box::new(Log::open(&arguments.source)?), color: arguments.look.color });
+            let with_velocities = fields_for(&arguments.look).velocity;
+            return Ok(Source::Log { log: Box::new(Log::open(&arguments.source)?), with_velocities });
         }
         let loaded = load(&arguments.source, &arguments.changes)?;
         let options = BuildOptions { threads: threads(arguments.threads)?, seed: None };
-        Ok(Source::Scene { loaded: Box::new(loaded), options, fields: fields_for(arguments.look.color) })
+        Ok(Source::Scene { loaded: Box::new(loaded), options, fields: fields_for(&arguments.look) })
     }
 
-    fn setting(&self) -> Setting {
+    fn header(&self) -> Header {
         match self {
-            Source::Log { log, .. } => log.setting().clone(),
-            Source::Scene { loaded, options, .. } => {
-                Simulation::new(&loaded.scene, options.clone()).setting(&loaded.scene, &loaded.path)
-            }
+            Source::Log { log, .. } => log.header().clone(),
+            Source::Scene { loaded, options, .. } => header(&Simulation::new(&loaded.scene, options.clone()), loaded),
         }
     }
 
@@ -153,12 +153,12 @@ impl Source {
 
     fn frames(&self) -> Result<Box<dyn Iterator<Item = Result<Snapshot, Failure>>>, Failure> {
         let frames: Box<dyn Iterator<Item = Result<Snapshot, Failure>>> = match self {
-            Source::Log { log, color } => {
+            Source::Log { log, with_velocities } => {
                 let mut speeds = Speeds::default();
-                let by_speed = *color == ColorBy::Speed;
+                let with_velocities = *with_velocities;
                 Box::new(log.frames()?.map(move |frame| {
                     let mut snapshot = frame?.snapshot;
-                    if by_speed {
+                    if with_velocities {
                         speeds.fill(&mut snapshot);
                     }
                     Ok(snapshot)
@@ -207,13 +207,13 @@ impl Iterator for SceneFrames {
     }
 }
 
-fn fields_for(color: ColorBy) -> Fields {
-    let none = Fields::default();
-    match color {
-        ColorBy::Material => none,
-        ColorBy::Speed => Fields { velocity: true, ..none },
-        ColorBy::Density => Fields { density: true, ..none },
-        ColorBy::Temperature => Fields { temperature: true, ..none },
+/// The columns that pictures need.
+fn fields_for(look: &LookArgs) -> Fields {
+    Fields {
+        velocity: look.color == ColorBy::Speed || look.vectors == Some(Vectors::Velocity),
+        density: look.color == ColorBy::Density,
+        temperature: look.color == ColorBy::Temperature,
+        samples: false,
     }
 }
 

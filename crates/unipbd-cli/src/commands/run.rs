@@ -1,9 +1,13 @@
 //! `run`: a scene from start to end.
 
+use std::path::Path;
+
 use unipbd_core::observe::{Diagnostics, Event};
 use unipbd_core::{BuildOptions, SolverError};
 
-use super::recording::Recording;
+use super::layout;
+use super::live::Viewers;
+use super::recording::{Recording, header};
 use super::scene::{load, threads};
 use crate::args::{RunArgs, StopCondition};
 use crate::exit::{Exit, Failure};
@@ -24,6 +28,7 @@ pub(super) fn run(arguments: &RunArgs, console: Console) -> Result<Exit, Failure
     let options = BuildOptions { threads: threads(arguments.threads)?, seed: None };
     let simulation = Simulation::new(&loaded.scene, options);
     announce(&simulation, &loaded, console);
+    let viewers = Viewers::start(arguments, &simulation, &loaded, console)?;
     let recording = destination
         .map(|destination| Recording::start(destination, &simulation, &loaded, arguments.log.fields, console))
         .transpose()?;
@@ -31,7 +36,12 @@ pub(super) fn run(arguments: &RunArgs, console: Console) -> Result<Exit, Failure
     interrupt::listen();
     let progress = Progress::new(console, simulation.frames, loaded.scene.duration);
     let watch = arguments.expect.then(|| Watch::new(&loaded.scene));
-    let mut run = Run { watch, simulation, recording, statistics, progress, console, conditions: &arguments.stop_on };
+    let layout = arguments.log.layout.as_deref();
+    if let Some(path) = layout.filter(|_| viewers.are_possible()) {
+        layout::write(path, &layout::of_start(&simulation, &header(&simulation, &loaded)))?;
+    }
+    let conditions = &arguments.stop_on;
+    let mut run = Run { watch, simulation, recording, viewers, statistics, progress, console, conditions, layout };
     let ended = run.until_end();
     run.progress.finish();
     run.close(ended, title(&loaded.scene, &loaded.path))
@@ -41,10 +51,12 @@ pub(super) fn run(arguments: &RunArgs, console: Console) -> Result<Exit, Failure
 struct Run<'a> {
     simulation: Simulation,
     recording: Option<Recording>,
+    viewers: Viewers,
     statistics: Statistics,
     progress: Progress,
     console: Console,
     conditions: &'a [StopCondition],
+    layout: Option<&'a Path>,
     watch: Option<Watch>,
 }
 
@@ -55,6 +67,9 @@ impl Run<'_> {
         loop {
             if interrupt::requested().is_some() {
                 return Ok((Outcome::Interrupted, diagnostics));
+            }
+            if !self.viewers.is_due(&mut self.simulation) {
+                continue;
             }
             match self.simulation.next_frame() {
                 None => return Ok((Outcome::Completed, diagnostics)),
@@ -68,27 +83,28 @@ impl Run<'_> {
         }
     }
 
-    /// Whether anything reads the diagnostics of the frames: the log, the JSON lines, a condition, or the summary,
+    /// Whether anything reads the diagnostics of the frames: the log, the JSON lines, a condition, a viewer, or the summary,
     /// whose mean and worst are those of all frames. They cost up to a fifth of a small scene's frame.
     fn is_measured(&self) -> bool {
         let shown = self.console.form == Form::Json || self.console.verbosity > Verbosity::Quiet;
-        shown || self.recording.is_some() || !self.conditions.is_empty()
+        shown || self.recording.is_some() || !self.conditions.is_empty() || self.viewers.want_diagnostics()
     }
 
     /// Looks at the state at the start or after a frame; measures it where anything reads that.
     fn observe(&mut self) -> Result<Option<Diagnostics>, Failure> {
-        let events = self.simulation.solver.take_events();
+        let mut events = self.viewers.take_events();
+        events.extend(self.simulation.solver.take_events());
         self.statistics.add_events(&events);
         self.progress.events(&events);
         if let Some(watch) = &mut self.watch {
             watch.observe(&self.simulation.solver);
         }
-        if !self.is_measured() {
-            return Ok(None);
+        let diagnostics = self.is_measured().then(|| self.simulation.solver.diagnostics());
+        if let Some(diagnostics) = &diagnostics {
+            self.show(diagnostics, &events)?;
         }
-        let diagnostics = self.simulation.solver.diagnostics();
-        self.show(&diagnostics, &events)?;
-        Ok(Some(diagnostics))
+        self.viewers.frame(&self.simulation, diagnostics.as_ref(), &events);
+        Ok(diagnostics)
     }
 
     /// Counts, records and shows a measured state.
@@ -123,7 +139,11 @@ impl Run<'_> {
         let whole = matches!(&ended, Ok((Outcome::Completed | Outcome::ConditionMet { .. }, _)));
         let log = self.recording.take().map(|recording| recording.finish(whole, self.console)).transpose();
         let (outcome, last) = ended?;
-        let log: Option<LogFile> = log?;
+        let mut log: Option<LogFile> = log?;
+        if let (Some(log), Some(path)) = (&mut log, self.layout) {
+            layout::write(path, &layout::of_log(&log.path)?)?;
+            log.layout = Some(path.to_owned());
+        }
         let completed = matches!(outcome, Outcome::Completed);
         let violations = self.watch.filter(|_| completed).map(|watch| watch.violations(&self.simulation.solver));
         let exit = match &violations {
@@ -146,6 +166,7 @@ impl Run<'_> {
             Outcome::Completed => {}
         }
         violations.iter().flatten().for_each(|line| self.console.error(format_args!("not as expected: {line}")));
+        self.viewers.finish(&mut self.simulation, self.console);
         Ok(exit)
     }
 }

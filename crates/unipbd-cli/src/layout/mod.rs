@@ -41,6 +41,11 @@ pub fn layout(setting: &Setting, view: View, topics: &[String], gauges: &[String
     layout
 }
 
+/// Whether this is a layout that [`layout`] made.
+pub fn is_layout(text: &Value) -> bool {
+    text["configById"][VIEW_PANEL].is_object()
+}
+
 /// Puts a plot of the gauges above the other plots.
 fn add_gauges(layout: &mut Value, gauges: &[String]) {
     let mut plot = layout["configById"]["Plot!error"].clone();

@@ -11,6 +11,7 @@ mod guard;
 mod record;
 mod records;
 mod summary;
+mod topics;
 mod wire;
 
 use std::collections::BTreeMap;
@@ -21,8 +22,9 @@ use unipbd_core::observe::{Diagnostics, Event};
 
 use crate::record::{Fields, Header, LOG_FORMAT, METADATA, SCENE_ATTACHMENT, log_format};
 use crate::snapshot::{Setting, Snapshot};
-pub(crate) use record::Record;
-pub(crate) use records::Records;
+use record::Record;
+use records::Records;
+pub(crate) use topics::{Traffic, topics};
 
 pub use error::LogError;
 pub use frames::Frames;

@@ -14,7 +14,7 @@ use super::messages::{self, Level, Log, POINT_STRIDE, PointCloud};
 use super::quantity_message::diagnostics_message;
 use super::schema::ParticleColumns;
 use super::shapes;
-use super::topic::Topic;
+use super::topic::{Topic, Topics};
 use super::{Fields, Header};
 use crate::snapshot::{Setting, Snapshot};
 
@@ -44,14 +44,23 @@ impl EncodedFrame {
     }
 }
 
-/// Turns frames into messages and remembers what the log already says.
+/// What is known about a frame.
+pub(crate) struct FrameState<'a> {
+    pub(crate) snapshot: &'a Snapshot,
+    pub(crate) diagnostics: Option<&'a Diagnostics>,
+    pub(crate) state_hash: Option<u64>,
+    /// What happened since the last frame.
+    pub(crate) events: &'a [Event],
+}
+
+/// Turns frames into messages and remembers what the reader was told already.
 pub(crate) struct Encoder {
     setting: Setting,
     fields: Fields,
     /// Time of the last message [ns].
     time: u64,
-    /// Whether a frame was encoded before.
-    started: bool,
+    /// Topics of which the reader has yet to be told what stays the same.
+    unsaid: Topics,
     /// Bodies as last described.
     described: Vec<Body>,
     /// Ids, materials and phases as last written, and the asked fields of this frame.
@@ -67,7 +76,7 @@ impl Encoder {
             setting: header.setting.clone(),
             fields,
             time: 0,
-            started: false,
+            unsaid: Topics::ALL,
             described: Vec::new(),
             columns: ParticleColumns::default(),
             order: Vec::new(),
@@ -75,33 +84,45 @@ impl Encoder {
         }
     }
 
-    /// Encodes a frame into `frame`, whose memory is reused. `/particles` comes last: where it is,
+    /// Has the next frame say again what stays the same in these topics: walls, shapes, ids.
+    #[cfg(feature = "live")]
+    pub(crate) fn say_again(&mut self, topics: Topics) {
+        self.unsaid.extend(topics);
+    }
+
+    /// Encodes the wanted topics of a frame into `frame`, whose memory is reused. `/particles` comes last: where it is,
     /// the frame is whole.
     pub(crate) fn encode(
         &mut self,
-        snapshot: &Snapshot,
-        diagnostics: Option<&Diagnostics>,
-        state_hash: Option<u64>,
-        events: &[Event],
+        state: &FrameState<'_>,
+        wanted: Topics,
         frame: &mut EncodedFrame,
     ) -> io::Result<()> {
+        let snapshot = state.snapshot;
         check_columns(snapshot)?;
         frame.messages.clear();
         frame.bytes.clear();
         let now = nanoseconds(snapshot.time).max(self.time);
-        self.encode_events(events, now, frame);
-        self.time = now;
-        self.encode_shapes(&snapshot.bodies, frame);
-        self.sort_by_id(&snapshot.ids);
-        self.encode_columns(snapshot, frame);
-        if let Some(diagnostics) = diagnostics {
-            frame.push(Topic::Diagnostics, now, &diagnostics_message(diagnostics, state_hash));
-            if !diagnostics.gauges.is_empty() {
-                frame.push(Topic::Gauges, now, &GaugeValues::of(diagnostics));
-            }
+        if wanted.contains(Topic::Log) {
+            self.encode_events(state.events, now, frame);
         }
-        self.encode_particles(snapshot, frame);
-        self.started = true;
+        self.time = now;
+        self.encode_shapes(&snapshot.bodies, wanted, frame);
+        self.sort_by_id(&snapshot.ids);
+        if wanted.contains(Topic::Columns) {
+            self.encode_columns(snapshot, frame);
+        }
+        if let Some(diagnostics) = state.diagnostics.filter(|_| wanted.contains(Topic::Diagnostics)) {
+            frame.push(Topic::Diagnostics, now, &diagnostics_message(diagnostics, state.state_hash));
+        }
+        let gauges = state.diagnostics.filter(|diagnostics| !diagnostics.gauges.is_empty());
+        if let Some(diagnostics) = gauges.filter(|_| wanted.contains(Topic::Gauges)) {
+            frame.push(Topic::Gauges, now, &GaugeValues::of(diagnostics));
+        }
+        if wanted.contains(Topic::Particles) {
+            self.encode_particles(snapshot, frame);
+        }
+        self.unsaid.remove(wanted);
         Ok(())
     }
 
@@ -125,31 +146,35 @@ impl Encoder {
     }
 
     /// Walls once, bodies when their shapes changed, poses every frame.
-    fn encode_shapes(&mut self, bodies: &[Body], frame: &mut EncodedFrame) {
+    fn encode_shapes(&mut self, bodies: &[Body], wanted: Topics, frame: &mut EncodedFrame) {
         let now = self.time;
         let walls = &self.setting.walls;
-        let first_walls = !self.started && !walls.is_empty();
-        let new_shapes = !same_shapes(&self.described, bodies);
-        if first_walls {
+        let said_before = self.described.len();
+        if !same_shapes(&self.described, bodies) {
+            self.described = bodies.to_vec();
+            self.unsaid.extend([Topic::Scene, Topic::Transforms, Topic::Bodies].into_iter().collect());
+        }
+        let unsaid = |topic: Topic| wanted.contains(topic) && self.unsaid.contains(topic);
+        if unsaid(Topic::Boundary) && !walls.is_empty() {
             let samples = shapes::boundary_samples(walls, self.setting.spacing);
             let cloud = messages::cloud(messages::WORLD.to_owned(), now, &samples, shapes::WALL_COLOR);
             frame.push(Topic::Boundary, now, &cloud);
         }
-        if first_walls || new_shapes {
-            let update = shapes::scene_update(now, walls, bodies, self.described.len());
+        let anything = said_before > 0 || !bodies.is_empty();
+        if unsaid(Topic::Scene) && (anything || !walls.is_empty()) {
+            let update = shapes::scene_update(now, walls, bodies, said_before);
             frame.push(Topic::Scene, now, &update);
         }
-        if self.fields.samples && bodies.iter().any(|body| !body.samples.is_empty()) {
+        if wanted.contains(Topic::BodySamples) && bodies.iter().any(|body| !body.samples.is_empty()) {
             let samples = shapes::body_samples(bodies);
             let cloud = messages::cloud(messages::WORLD.to_owned(), now, &samples, shapes::BODY_COLOR);
             frame.push(Topic::BodySamples, now, &cloud);
         }
-        if !bodies.is_empty() || new_shapes {
+        if wanted.contains(Topic::Transforms) && anything {
             frame.push(Topic::Transforms, now, &messages::transforms(now, bodies));
-            frame.push(Topic::Bodies, now, &bodies_message(bodies, new_shapes));
         }
-        if new_shapes {
-            self.described = bodies.to_vec();
+        if wanted.contains(Topic::Bodies) && anything {
+            frame.push(Topic::Bodies, now, &bodies_message(bodies, unsaid(Topic::Bodies)));
         }
     }
 
@@ -181,7 +206,7 @@ impl Encoder {
         if let (true, Some(temperatures)) = (self.fields.temperature, &snapshot.temperatures) {
             columns.temperature.extend(rows().map(|row| temperatures[row]));
         }
-        if changed || !self.started {
+        if changed || self.unsaid.contains(Topic::Columns) {
             frame.push(Topic::Columns, self.time, columns);
         } else if self.fields.any() {
             let kept = [&mut columns.id, &mut columns.material, &mut columns.phase].map(std::mem::take);
@@ -248,7 +273,7 @@ fn rgba([red, green, blue]: [u8; 3], phase: Phase) -> [u8; 4] {
 }
 
 /// Simulated time as the log holds it: whole nanoseconds from 0.
-fn nanoseconds(seconds: f64) -> u64 {
+pub(crate) fn nanoseconds(seconds: f64) -> u64 {
     (seconds * 1e9).round() as u64
 }
 

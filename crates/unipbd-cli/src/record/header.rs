@@ -49,11 +49,12 @@ impl Header {
 
     /// SHA-256 of the scene text, as hexadecimal digits.
     pub fn scene_sha256(&self) -> String {
-        let mut digits = String::with_capacity(64);
-        for byte in Sha256::digest(&self.scene_text) {
-            let _ = write!(digits, "{byte:02x}");
-        }
-        digits
+        hexadecimal_sha256(self.scene_text.as_bytes())
+    }
+
+    /// SHA-256 of everything that the run follows from, as hexadecimal digits: the same for the same run.
+    pub fn run_sha256(&self) -> String {
+        hexadecimal_sha256(json(&self.to_metadata(Fields::default())).as_bytes())
     }
 
     /// The metadata record of a log with these fields.
@@ -110,6 +111,14 @@ impl Header {
         };
         Ok((header, entries.parse("fields")?))
     }
+}
+
+fn hexadecimal_sha256(bytes: &[u8]) -> String {
+    let mut digits = String::with_capacity(64);
+    for byte in Sha256::digest(bytes) {
+        let _ = write!(digits, "{byte:02x}");
+    }
+    digits
 }
 
 /// Version of the format of a log.

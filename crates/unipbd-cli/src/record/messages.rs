@@ -1,4 +1,4 @@
-//! The Foxglove messages of a log: the only file that names the crate they come from.
+//! The Foxglove messages of a log: the only file that names the crate they come from, beside the server of live runs.
 
 pub(crate) use foxglove::messages::line_primitive::Type as LineType;
 pub(crate) use foxglove::messages::log::Level;

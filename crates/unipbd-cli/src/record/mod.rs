@@ -42,7 +42,7 @@ use unipbd_core::observe::{Diagnostics, Event};
 
 use crate::snapshot::Snapshot;
 use background::Background;
-use encode::Encoder;
+
 use writer::LogWriter;
 
 pub use destination::{Destination, DestinationError, Existing, is_input};
@@ -52,11 +52,15 @@ pub use header::Header;
 pub use same_file::same_file;
 
 pub(crate) use body_message::kind_name;
+
+#[cfg(feature = "live")]
+pub(crate) use encode::{EncodedFrame, nanoseconds};
+pub(crate) use encode::{Encoder, FrameState};
 pub(crate) use header::{LOG_FORMAT, METADATA, SCENE_ATTACHMENT, log_format};
 pub(crate) use messages::{Level, Log, POINT_STRIDE, PointCloud, unpack_position};
 pub(crate) use quantity_message::read_diagnostics;
 pub(crate) use shapes::outline as outline_to_draw;
-pub(crate) use topic::Topic;
+pub(crate) use topic::{Topic, Topics};
 
 /// Writes a log frame by frame; compression and output happen on a thread of their own.
 ///
@@ -65,6 +69,7 @@ pub(crate) use topic::Topic;
 pub struct Recorder {
     path: PathBuf,
     encoder: Encoder,
+    topics: Topics,
     background: Background,
 }
 
@@ -94,7 +99,8 @@ impl Recorder {
     ) -> Result<Recorder, RecordError> {
         let writer = LogWriter::new(output, header, fields).map_err(|error| RecordError::from_mcap(path, error))?;
         let background = Background::start(writer).map_err(|cause| RecordError::new(path, cause))?;
-        Ok(Recorder { path: path.to_owned(), encoder: Encoder::new(header, fields), background })
+        let encoder = Encoder::new(header, fields);
+        Ok(Recorder { path: path.to_owned(), encoder, topics: topics(fields), background })
     }
 
     /// Adds a frame with what is known about it and what happened since the last one. An error of
@@ -107,8 +113,9 @@ impl Recorder {
         events: &[Event],
     ) -> Result<(), RecordError> {
         let mut frame = self.background.spare_frame();
+        let state = FrameState { snapshot, diagnostics, state_hash, events };
         self.encoder
-            .encode(snapshot, diagnostics, state_hash, events, &mut frame)
+            .encode(&state, self.topics, &mut frame)
             .and_then(|()| self.background.send(frame))
             .map_err(|cause| RecordError::new(&self.path, cause))
     }
@@ -118,6 +125,11 @@ impl Recorder {
         let totals = self.background.finish().map_err(|cause| RecordError::new(&self.path, cause))?;
         Ok(Summary { frames: totals.frames, bytes: totals.bytes })
     }
+}
+
+/// The topics of a run with these fields.
+pub(crate) fn topics(fields: Fields) -> Topics {
+    Topic::ALL.into_iter().filter(|topic| *topic != Topic::BodySamples || fields.samples).collect()
 }
 
 /// Opens an empty file that no other recorder writes to.

@@ -16,6 +16,20 @@ pub(crate) enum Topic {
 }
 
 impl Topic {
+    /// Every topic.
+    pub(crate) const ALL: [Topic; 10] = [
+        Topic::Particles,
+        Topic::Boundary,
+        Topic::BodySamples,
+        Topic::Scene,
+        Topic::Transforms,
+        Topic::Diagnostics,
+        Topic::Gauges,
+        Topic::Columns,
+        Topic::Bodies,
+        Topic::Log,
+    ];
+
     /// The name in the log.
     pub(crate) fn name(self) -> String {
         match self {
@@ -34,10 +48,7 @@ impl Topic {
 
     /// The topic with this name, if it is one of ours.
     pub(crate) fn from_name(name: &str) -> Option<Topic> {
-        use Topic::{Bodies, BodySamples, Boundary, Columns, Diagnostics, Gauges, Log, Particles, Scene, Transforms};
-        [Particles, Boundary, BodySamples, Scene, Transforms, Diagnostics, Gauges, Columns, Bodies, Log]
-            .into_iter()
-            .find(|topic| topic.name() == name)
+        Topic::ALL.into_iter().find(|topic| topic.name() == name)
     }
 
     /// Name and descriptor set of its messages, in a run with these gauges.
@@ -52,5 +63,40 @@ impl Topic {
             Topic::Columns => ("unipbd.ParticleColumns".to_owned(), schema::descriptor_set()),
             Topic::Bodies => ("unipbd.Bodies".to_owned(), schema::descriptor_set()),
         }
+    }
+}
+
+/// A set of topics.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Topics(u16);
+
+impl Topics {
+    /// Every topic.
+    pub(crate) const ALL: Topics = Topics((1 << Topic::ALL.len()) - 1);
+
+    /// Whether the topic is one of them.
+    pub(crate) fn contains(self, topic: Topic) -> bool {
+        self.0 & (1 << topic as u16) != 0
+    }
+
+    /// Whether there are none.
+    pub(crate) fn is_empty(self) -> bool {
+        self.0 == 0
+    }
+
+    /// Adds those of another set.
+    pub(crate) fn extend(&mut self, other: Topics) {
+        self.0 |= other.0;
+    }
+
+    /// Takes those of another set away.
+    pub(crate) fn remove(&mut self, other: Topics) {
+        self.0 &= !other.0;
+    }
+}
+
+impl FromIterator<Topic> for Topics {
+    fn from_iter<I: IntoIterator<Item = Topic>>(topics: I) -> Self {
+        Topics(topics.into_iter().fold(0, |set, topic| set | 1 << topic as u16))
     }
 }

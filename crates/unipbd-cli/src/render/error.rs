@@ -9,6 +9,10 @@ use super::color_by::ColorBy;
 pub enum RenderError {
     /// The frames lack the column that the colours show.
     MissingColumn(ColorBy),
+    /// The frames lack the velocities that arrows show.
+    NoVelocities,
+    /// The frame has no bodies, on which arrows show forces.
+    NoBodies,
     /// The region to show is empty or not finite.
     View,
     /// The picture would be empty or absurdly large.
@@ -62,6 +66,10 @@ impl fmt::Display for RenderError {
                 let [name, field] = [by.name(), by.field().unwrap_or(by.name())];
                 write!(f, "the frames have no {field} column to colour by {name}: record it with --fields {field}")
             }
+            RenderError::NoVelocities => {
+                write!(f, "the frames have no velocity column for arrows: record it with --fields velocity")
+            }
+            RenderError::NoBodies => write!(f, "arrows of force stand at bodies, and there are none"),
             RenderError::View => {
                 write!(f, "the view is empty: its upper right corner must lie above and right of its lower left one")
             }
@@ -77,7 +85,9 @@ impl fmt::Display for RenderError {
             RenderError::PlotFormat(path) => {
                 write!(f, "cannot tell the format of {}: use NAME.svg, NAME.pdf or NAME.png", path.display())
             }
-            RenderError::Exists(path) => write!(f, "{} exists: use --force to replace it", path.display()),
+            RenderError::Exists(path) => {
+                write!(f, "{} exists and was not made from this run: use --force to replace it", path.display())
+            }
             RenderError::Job(what) => write!(f, "{what}"),
             RenderError::NoFrames => write!(f, "no frame lies in the chosen span of time"),
             RenderError::Frame(source) => write!(f, "{source}"),

@@ -1,3 +1,5 @@
+use tiny_skia::Mask;
+
 use super::image::{Image, window};
 
 /// Four sums per pixel: three weighted values and the weight itself.
@@ -96,14 +98,16 @@ impl Field {
     }
 
     /// Lays the field over a picture of the same width: `paint` makes colour and opacity of the
-    /// mean values and the weight of a pixel.
-    pub fn lay_over(&self, image: &mut Image, paint: impl Fn([f32; 3], f32) -> ([f32; 3], f32)) {
+    /// mean values and the weight of a pixel. Where there is a mask, it shows through that alone.
+    pub fn lay_over(&self, image: &mut Image, mask: Option<&Mask>, paint: impl Fn([f32; 3], f32) -> ([f32; 3], f32)) {
         let Some([[left, right], [top, bottom]]) = self.touched else { return };
         for y in top..bottom {
             for x in left..right {
                 let [a, b, c, weight] = self.sums[y * self.size[0] + x];
                 if weight > 1e-4 {
                     let (color, opacity) = paint([a / weight, b / weight, c / weight], weight);
+                    let share = mask.map_or(1.0, |mask| f32::from(mask.data()[y * self.size[0] + x]) / 255.0);
+                    let opacity = opacity * share;
                     if opacity > 0.0 {
                         image.blend(y * image.width() as usize + x, color, opacity);
                     }

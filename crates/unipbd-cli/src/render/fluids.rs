@@ -1,5 +1,6 @@
 //! Layers made of particles: gas, smoke, liquids and other carriers, grains.
 
+use tiny_skia::Mask;
 use unipbd_core::math::Vector64;
 use unipbd_core::phase::Phase;
 
@@ -45,6 +46,8 @@ pub(super) struct Scope<'a> {
     /// Colours of the liquids where there are several.
     pub liquids: &'a [[f32; 3]],
     pub walls: &'a [Wall],
+    /// What gas and smoke are cut to, of the size of the region.
+    pub mask: Option<&'a Mask>,
     /// Spacing in pixels.
     pub spacing: f32,
 }
@@ -82,7 +85,7 @@ impl Scope<'_> {
         let slope = self.edge_slope();
         let (tint, strength) = self.theme.rim;
         let tint = color::to_float(tint);
-        field.lay_over(image, |mean, weight| {
+        field.lay_over(image, None, |mean, weight| {
             let inside = ((weight - SURFACE_EDGE) / (SURFACE_INSIDE - SURFACE_EDGE)).clamp(0.0, 1.0);
             let strength = strength * (1.0 - inside) * (1.0 - inside);
             let body = if self.liquids.len() > 1 { sharpened(mean, self.liquids) } else { mean };
@@ -96,16 +99,16 @@ impl Scope<'_> {
         let value = |row| [scalar.fraction(row), 0.0, 0.0];
         let soft = |phase| matches!(phase, Phase::Gas | Phase::Smoke);
         self.gather(field, Shape::Gas, |phase| soft(phase) && scalar.applies_to(phase), value);
-        field.lay_over(image, |mean, weight| (paint(mean), closedness(weight)));
+        field.lay_over(image, self.mask, |mean, weight| (paint(mean), closedness(weight)));
         self.gather(field, Shape::Surface, |phase| !soft(phase) && scalar.applies_to(phase), value);
         let slope = self.edge_slope();
-        field.lay_over(image, |mean, weight| (paint(mean), coverage(weight, slope)));
+        field.lay_over(image, None, |mean, weight| (paint(mean), coverage(weight, slope)));
     }
 
     /// A veil that shows where gas is and lets everything through.
     pub fn gas(&self, image: &mut Image, field: &mut Field) {
         self.gather(field, Shape::Gas, |phase| phase == Phase::Gas, |row| color::to_float(self.color(row)));
-        field.lay_over(image, |mean, weight| (mean, VEIL_OPACITY * closedness(weight)));
+        field.lay_over(image, self.mask, |mean, weight| (mean, VEIL_OPACITY * closedness(weight)));
     }
 
     /// Soft blobs that add up, so that many look like smoke and not like grains.
@@ -117,7 +120,7 @@ impl Scope<'_> {
         for (row, center) in self.rows(|phase| phase == Phase::Smoke) {
             field.add_gaussian(center, sigma, peak, color::to_float(self.color(row)));
         }
-        field.lay_over(image, smoke_paint);
+        field.lay_over(image, self.mask, smoke_paint);
     }
 
     fn gather(

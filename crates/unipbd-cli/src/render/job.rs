@@ -3,6 +3,7 @@ use std::path::{Path, PathBuf};
 use super::encode::{GifOptions, GifWriter, Mp4Writer, write_png};
 use super::error::RenderError;
 use super::options::RenderOptions;
+use super::origin::Origin;
 use super::output::{Numbered, Output, plan_output};
 use super::renderer::Renderer;
 use super::replay::{MOST_FPS, Replay};
@@ -15,7 +16,7 @@ use crate::snapshot::{Setting, Snapshot};
 /// Whether an output that exists may be replaced.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Existing {
-    /// An existing output is an error.
+    /// An existing output is an error, unless it was made from the same run.
     #[default]
     Keep,
     /// An existing output is replaced.
@@ -29,6 +30,8 @@ pub struct RenderJob {
     pub output: PathBuf,
     /// Whether an existing output may be replaced.
     pub existing: Existing,
+    /// The run that the pictures show: they carry it, and one of the same run may be replaced.
+    pub origin: Option<Origin>,
     /// Which frames to draw.
     pub selection: Selection,
     /// Simulated seconds shown in a second of a film.
@@ -47,12 +50,26 @@ impl RenderJob {
         RenderJob {
             output: output.into(),
             existing: Existing::default(),
+            origin: None,
             selection: Selection::default(),
             speed: 1.0,
             options: RenderOptions::default(),
             gif: GifOptions::default(),
             ffmpeg: PathBuf::from("ffmpeg"),
         }
+    }
+
+    /// Refuses to replace a file unless the job allows it, or the file was made from the same run.
+    pub fn check_free(&self, path: &Path) -> Result<(), RenderError> {
+        let taken = self.existing == Existing::Keep && path.symlink_metadata().is_ok();
+        if taken && !self.origin.as_ref().is_some_and(|origin| origin.made(path)) {
+            return Err(RenderError::Exists(path.to_owned()));
+        }
+        Ok(())
+    }
+
+    fn mark(&self) -> &str {
+        self.origin.as_ref().map_or("", Origin::mark)
     }
 }
 
@@ -96,16 +113,10 @@ pub fn run<E: Into<Box<dyn std::error::Error + Send + Sync>>>(
         Output::Pictures(names) => pictures(frames, renderer, job, &names),
         Output::Gif(path) => film(frames, renderer, job, &path, Format::Gif),
         Output::Mp4(path) => film(frames, renderer, job, &path, Format::Mp4),
-        Output::Svg(path) => still(frames, setting, job, &path, |sheet| sheet.svg().into_bytes()),
+        Output::Svg(path) => still(frames, setting, job, &path, |sheet, mark| sheet.svg(mark).into_bytes()),
         Output::Pdf(path) => still(frames, setting, job, &path, Sheet::pdf),
         Output::Replay(path) => replay(frames, setting, job, &path),
     }
-}
-
-/// Refuses to replace a file unless the job allows it.
-fn check_free(path: &Path, job: &RenderJob) -> Result<(), RenderError> {
-    let taken = job.existing == Existing::Keep && path.symlink_metadata().is_ok();
-    if taken { Err(RenderError::Exists(path.to_owned())) } else { Ok(()) }
 }
 
 fn picture(
@@ -114,10 +125,10 @@ fn picture(
     job: &RenderJob,
     path: &Path,
 ) -> Result<Rendered, RenderError> {
-    check_free(path, job)?;
+    job.check_free(path)?;
     let frame = job.selection.single(frames)?;
     let image = renderer.draw(&frame)?;
-    write_png(path, image)?;
+    write_png(path, image, job.mark())?;
     Ok(Rendered { frames: 1, path: path.to_owned(), size: [image.width(), image.height()], fps: None })
 }
 
@@ -133,9 +144,9 @@ fn pictures(
     let mut done = Rendered { frames: 0, path: names.path(0), size: [0; 2], fps: None };
     for frame in job.selection.many(frames) {
         let path = names.path(done.frames);
-        check_free(&path, job)?;
+        job.check_free(&path)?;
         let image = renderer.draw(&frame?)?;
-        write_png(&path, image)?;
+        write_png(&path, image, job.mark())?;
         done.size = [image.width(), image.height()];
         done.frames += 1;
     }
@@ -148,12 +159,13 @@ fn still(
     setting: &Setting,
     job: &RenderJob,
     path: &Path,
-    form: impl FnOnce(&Sheet) -> Vec<u8>,
+    form: impl FnOnce(&Sheet, &str) -> Vec<u8>,
 ) -> Result<Rendered, RenderError> {
-    check_free(path, job)?;
+    job.check_free(path)?;
     let frame = job.selection.single(frames)?;
     let sheet = vector::draw(setting, &job.options, &frame)?;
-    std::fs::write(path, form(&sheet)).map_err(|source| RenderError::Write { path: path.to_owned(), source })?;
+    std::fs::write(path, form(&sheet, job.mark()))
+        .map_err(|source| RenderError::Write { path: path.to_owned(), source })?;
     let size = sheet.size().map(|length| length.round() as u32);
     Ok(Rendered { frames: 1, path: path.to_owned(), size, fps: None })
 }
@@ -165,7 +177,10 @@ fn replay(
     job: &RenderJob,
     path: &Path,
 ) -> Result<Rendered, RenderError> {
-    check_free(path, job)?;
+    job.check_free(path)?;
+    if job.options.vectors.is_some() {
+        return Err(RenderError::Job("a page draws no arrows: choose PNG, SVG, PDF or a film for --vectors"));
+    }
     let cadence = Cadence::new(1.0, MOST_FPS, job.selection.every);
     let (fps, mut frames) = cadence.apply(job.selection.many(frames))?;
     let first = frames.next().ok_or(RenderError::NoFrames)??;
@@ -180,7 +195,7 @@ fn replay(
         page.push(&frame);
     }
     let done = Rendered { frames: page.frames(), path: path.to_owned(), size: [0; 2], fps: Some(fps) };
-    page.finish(path)?;
+    page.finish(path, job.mark())?;
     Ok(done)
 }
 
@@ -214,7 +229,7 @@ fn film(
     path: &Path,
     format: Format,
 ) -> Result<Rendered, RenderError> {
-    check_free(path, job)?;
+    job.check_free(path)?;
     let cadence = Cadence::new(job.speed, format.most_fps(), job.selection.every);
     let (fps, frames) = cadence.apply(job.selection.many(frames))?;
     let mut film: Option<Film> = None;
@@ -224,7 +239,7 @@ fn film(
         let film = match &mut film {
             Some(film) => film,
             None => film.insert(match format {
-                Format::Gif => Film::Gif(GifWriter::new(path, fps, job.gif)),
+                Format::Gif => Film::Gif(GifWriter::new(path, fps, job.gif).marked(job.mark())),
                 Format::Mp4 => Film::Mp4(Mp4Writer::new(path, fps, image, &job.ffmpeg)?),
             }),
         };

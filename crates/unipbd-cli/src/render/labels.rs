@@ -56,7 +56,7 @@ fn lettering(height: f32, align: Align, theme: &Theme) -> Lettering {
     Lettering { height, align, color: theme.text, halo: theme.background }
 }
 
-fn plate(paper: &mut dyn Paper, area: [f32; 4], theme: &Theme) {
+pub(super) fn plate(paper: &mut dyn Paper, area: [f32; 4], theme: &Theme) {
     paper.rectangle(area, theme.background, PLATE);
 }
 

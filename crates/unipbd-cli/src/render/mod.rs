@@ -6,6 +6,7 @@
 pub mod color;
 pub mod encode;
 
+mod arrows;
 mod axes;
 mod bodies;
 mod color_by;
@@ -16,6 +17,7 @@ mod image;
 mod job;
 mod labels;
 mod options;
+mod origin;
 mod output;
 mod paper;
 mod plot;
@@ -36,7 +38,8 @@ pub use color_by::ColorBy;
 pub use error::RenderError;
 pub use image::Image;
 pub use job::{Existing, RenderJob, Rendered, run};
-pub use options::{Annotations, Background, Range, RenderOptions, Style, TimeStamp};
+pub use options::{Annotations, Background, Range, RenderOptions, Style, TimeStamp, Vectors};
+pub use origin::Origin;
 pub use output::{Numbered, Output, plan_output};
 pub use plot::{Curve, PlotOptions, write_plot};
 pub use renderer::Renderer;

@@ -57,6 +57,15 @@ pub struct Annotations {
     pub legend: bool,
 }
 
+/// What arrows show.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Vectors {
+    /// Mean velocities of particles [m/s], and those of bodies.
+    Velocity,
+    /// Forces of fluids and of contacts on bodies [N].
+    Force,
+}
+
 /// How pictures look.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderOptions {
@@ -76,6 +85,10 @@ pub struct RenderOptions {
     pub time_stamp: TimeStamp,
     /// Axes, scale bar, legend.
     pub annotations: Annotations,
+    /// What arrows show, if there are any.
+    pub vectors: Option<Vectors>,
+    /// The number that the longest arrow stands for [m/s], [N]; left out, that of the frame drawn.
+    pub longest_vector: Option<f64>,
 }
 
 impl Default for RenderOptions {
@@ -89,6 +102,8 @@ impl Default for RenderOptions {
             view: None,
             time_stamp: TimeStamp::default(),
             annotations: Annotations::default(),
+            vectors: None,
+            longest_vector: None,
         }
     }
 }

@@ -1,5 +1,7 @@
+use tiny_skia::{FillRule, Mask, Transform};
 use unipbd_core::phase::Phase;
 
+use super::arrows::Arrows;
 use super::axes::Framed;
 use super::color::Rgb;
 use super::error::RenderError;
@@ -10,7 +12,7 @@ use super::options::{RenderOptions, Style, TimeStamp};
 use super::scalar::Scalar;
 use super::theme::Theme;
 use super::view::{Camera, View};
-use super::walls::Wall;
+use super::walls::{Wall, region};
 use super::{bodies, labels};
 use crate::snapshot::{Setting, Snapshot};
 
@@ -21,6 +23,8 @@ const MOST_ENTRIES: usize = 12;
 struct Canvas {
     camera: Camera,
     walls: Vec<Wall>,
+    /// What closed walls surround.
+    mask: Option<Mask>,
     image: Image,
     /// The image within its axes.
     framed: Option<Framed>,
@@ -67,6 +71,11 @@ impl Renderer {
         canvas.image.fill(self.theme.background);
         self.draw_particles(&mut canvas, frame);
         self.draw_solids(&mut canvas, frame);
+        if let Some(vectors) = self.options.vectors {
+            let (longest, theme, spacing) = (self.options.longest_vector, &self.theme, self.setting.spacing);
+            let camera = &canvas.camera;
+            Arrows { vectors, longest, frame, camera, theme, spacing, scale }.draw(&mut canvas.image)?;
+        }
         if let Some(scalar) = &self.scalar {
             labels::color_bar(&mut canvas.image, scalar, canvas.camera.size[1], &self.theme, scale);
         }
@@ -99,19 +108,25 @@ impl Renderer {
         let camera = Camera::new(view, self.options.width)?;
         let strip = if self.scalar.is_some() { labels::strip_height(self.scale()) } else { 0 };
         let image = Image::new(camera.size[0], camera.size[1].saturating_add(strip), self.theme.background)?;
-        let walls = self.setting.walls.iter().filter_map(|outline| Wall::new(outline, &camera)).collect();
+        let walls: Vec<Wall> = self.setting.walls.iter().filter_map(|outline| Wall::new(outline, &camera)).collect();
+        let mask = region(&walls, &camera).and_then(|path| {
+            let mut mask = Mask::new(camera.size[0], camera.size[1])?;
+            mask.fill_path(&path, FillRule::Winding, true, Transform::identity());
+            Some(mask)
+        });
         let framed = match self.options.annotations.axes {
             true => Some(Framed::new(&camera, &image, &self.theme, self.scale())?),
             false => None,
         };
-        Ok(Canvas { camera, walls, image, framed })
+        Ok(Canvas { camera, walls, mask, image, framed })
     }
 
     fn draw_particles(&mut self, canvas: &mut Canvas, frame: &Snapshot) {
-        let Canvas { camera, walls, image, .. } = canvas;
+        let Canvas { camera, walls, mask, image, .. } = canvas;
         let spacing = camera.length(self.setting.spacing);
         let (colors, liquids) = (&self.colors[..], &self.liquids[..]);
-        let scope = Scope { frame, camera, theme: &self.theme, colors, liquids, walls, spacing };
+        let mask = mask.as_ref();
+        let scope = Scope { frame, camera, theme: &self.theme, colors, liquids, walls, mask, spacing };
         let field = &mut self.field;
         let has_shapes = !frame.bodies.is_empty();
         match (&self.scalar, self.options.style) {

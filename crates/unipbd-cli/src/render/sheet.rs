@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 
 use pdf_writer::types::{LineCapStyle, LineJoinStyle};
-use pdf_writer::{Content, Finish as _, Pdf, Rect, Ref};
+use pdf_writer::{Content, Finish as _, Pdf, Rect, Ref, TextStr};
 use tiny_skia::{Path, PathSegment};
 
 use super::color::{self, Rgb, css};
@@ -23,6 +23,8 @@ pub(super) struct Sheet {
 struct Layer {
     offset: [f32; 2],
     clip: Option<[f32; 2]>,
+    /// What it is cut to besides, by the nonzero rule.
+    region: Option<Path>,
     marks: Vec<Mark>,
 }
 
@@ -45,7 +47,13 @@ impl Sheet {
 
     /// What is drawn from now on lies `offset` away, and is cut to a rectangle of size `clip`.
     pub fn start_layer(&mut self, offset: [f32; 2], clip: Option<[f32; 2]>) {
-        self.layers.push(Layer { offset, clip, marks: Vec::new() });
+        self.layers.push(Layer { offset, clip, region: None, marks: Vec::new() });
+    }
+
+    /// What is drawn from now on lies where the last layer does, and is cut to this region besides.
+    pub fn cut_to(&mut self, region: Option<Path>) {
+        let (offset, clip) = self.layers.last().map_or(([0.0; 2], None), |layer| (layer.offset, layer.clip));
+        self.layers.push(Layer { offset, clip, region, marks: Vec::new() });
     }
 
     fn push(&mut self, mark: Mark) {
@@ -57,20 +65,25 @@ impl Sheet {
         }
     }
 
+    /// Layers with anything on them.
+    fn drawn(&self) -> impl Iterator<Item = &Layer> {
+        self.layers.iter().filter(|layer| !layer.marks.is_empty())
+    }
+
     /// A colour as it looks over the background: plates and veils of a sheet are opaque.
     fn opaque(&self, over: Rgb, opacity: f32) -> Rgb {
         color::mix(self.background, over, opacity.clamp(0.0, 1.0))
     }
 
-    /// The sheet as SVG 1.1.
-    pub fn svg(&self) -> String {
+    /// The sheet as SVG 1.1, with a mark of where it comes from.
+    pub fn svg(&self, mark: &str) -> String {
         let [width, height] = self.size;
         let mut text = format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
-             viewBox=\"0 0 {width} {height}\">\n<rect width=\"{width}\" height=\"{height}\" fill=\"{}\"/>\n",
+             viewBox=\"0 0 {width} {height}\">\n<desc>{mark}</desc>\n<rect width=\"{width}\" height=\"{height}\" fill=\"{}\"/>\n",
             css(self.background)
         );
-        for (number, layer) in self.layers.iter().enumerate() {
+        for (number, layer) in self.drawn().enumerate() {
             let [x, y] = layer.offset;
             let mut clip = String::new();
             if let Some([width, height]) = layer.clip {
@@ -81,15 +94,20 @@ impl Sheet {
                 clip = format!(" clip-path=\"url(#c{number})\"");
             }
             let _ = writeln!(text, "<g transform=\"translate({x} {y})\"{clip}>");
+            if let Some(region) = &layer.region {
+                let path = svg_path(region);
+                let _ = writeln!(text, "<clipPath id=\"r{number}\"><path d=\"{path}\"/></clipPath>");
+                let _ = writeln!(text, "<g clip-path=\"url(#r{number})\">");
+            }
             layer.marks.iter().for_each(|mark| svg_mark(&mut text, mark));
-            text += "</g>\n";
+            text += if layer.region.is_some() { "</g>\n</g>\n" } else { "</g>\n" };
         }
         text + "</svg>\n"
     }
 
-    /// The sheet as a page of PDF 1.7.
-    pub fn pdf(&self) -> Vec<u8> {
-        let [catalog, pages, page, content] = [1, 2, 3, 4].map(Ref::new);
+    /// The sheet as a page of PDF 1.7, with a mark of where it comes from.
+    pub fn pdf(&self, mark: &str) -> Vec<u8> {
+        let [catalog, pages, page, content, information] = [1, 2, 3, 4, 5].map(Ref::new);
         let [width, height] = self.size.map(|length| length * POINTS_PER_PIXEL);
         let mut pdf = Pdf::new();
         pdf.catalog(catalog).pages(pages);
@@ -98,6 +116,7 @@ impl Sheet {
         leaf.media_box(Rect::new(0.0, 0.0, width, height)).parent(pages).contents(content);
         leaf.resources();
         leaf.finish();
+        pdf.document_info(information).creator(TextStr("unipbd")).keywords(TextStr(mark));
         pdf.stream(content, &self.pdf_content(height)).filter(pdf_writer::Filter::FlateDecode);
         pdf.finish()
     }
@@ -110,11 +129,15 @@ impl Sheet {
         let [width, rows] = self.size;
         fill_color(&mut page, self.background);
         page.rect(0.0, 0.0, width, rows).fill_nonzero();
-        for layer in &self.layers {
+        for layer in self.drawn() {
             page.save_state();
             page.transform([1.0, 0.0, 0.0, 1.0, layer.offset[0], layer.offset[1]]);
             if let Some([width, height]) = layer.clip {
                 page.rect(0.0, 0.0, width, height).clip_nonzero().end_path();
+            }
+            if let Some(region) = &layer.region {
+                pdf_path(&mut page, region);
+                page.clip_nonzero().end_path();
             }
             layer.marks.iter().for_each(|mark| pdf_mark(&mut page, mark));
             page.restore_state();

@@ -2,6 +2,7 @@
 
 use unipbd_core::phase::Phase;
 
+use super::arrows::Arrows;
 use super::color::Rgb;
 use super::error::RenderError;
 use super::options::{RenderOptions, TimeStamp};
@@ -10,7 +11,7 @@ use super::scalar::Scalar;
 use super::sheet::Sheet;
 use super::theme::Theme;
 use super::view::{Camera, View};
-use super::walls::Wall;
+use super::walls::{Wall, region};
 use super::{axes, bodies, fluids, labels};
 use crate::snapshot::{Setting, Snapshot};
 
@@ -27,7 +28,7 @@ pub(super) fn draw(setting: &Setting, options: &RenderOptions, frame: &Snapshot)
         None => None,
     };
     let still = Still { setting, options, frame, camera, theme: Theme::of(options.background), scalar };
-    Ok(still.sheet())
+    still.sheet()
 }
 
 struct Still<'a> {
@@ -40,7 +41,7 @@ struct Still<'a> {
 }
 
 impl Still<'_> {
-    fn sheet(&self) -> Sheet {
+    fn sheet(&self) -> Result<Sheet, RenderError> {
         let (theme, scale, annotations) = (&self.theme, size_of_lines(self.options.width), self.options.annotations);
         let margins = annotations.axes.then(|| axes::Margins::new(scale));
         let (left, below, beside) = margins.map_or((0, 0, 0), |margins| (margins.left, margins.below, margins.beside));
@@ -56,6 +57,11 @@ impl Still<'_> {
         sheet.start_layer([left as f32, 0.0], Some(region));
         self.draw_particles(&mut sheet);
         self.draw_solids(&mut sheet, scale);
+        if let Some(vectors) = self.options.vectors {
+            let (longest, spacing) = (self.options.longest_vector, self.setting.spacing);
+            let (frame, camera) = (self.frame, &self.camera);
+            Arrows { vectors, longest, frame, camera, theme, spacing, scale }.draw(&mut sheet)?;
+        }
         if annotations.scale_bar {
             labels::scale_bar(&mut sheet, self.camera.size[1], self.camera.scale, theme, scale);
         }
@@ -70,7 +76,7 @@ impl Still<'_> {
             sheet.start_layer([left as f32, height + below as f32], Some([width, strip as f32]));
             labels::color_bar(&mut sheet, scalar, 0, theme, scale);
         }
-        sheet
+        Ok(sheet)
     }
 
     fn colors(&self) -> Vec<Rgb> {
@@ -87,7 +93,13 @@ impl Still<'_> {
             (|phase| !matches!(phase, Phase::Gas | Phase::Smoke), 1.0),
             (|phase| phase == Phase::Smoke, 0.4),
         ];
+        let walls: Vec<Wall> =
+            self.setting.walls.iter().filter_map(|outline| Wall::new(outline, &self.camera)).collect();
+        let region = region(&walls, &self.camera);
         for (passes, opacity) in layers {
+            // Soft phases alone: what else is behind a wall shall be seen.
+            let soft = passes(Phase::Gas) || passes(Phase::Smoke);
+            sheet.cut_to(region.clone().filter(|_| soft));
             let rows = (0..frame.positions.len()).filter(|&row| passes(frame.phases[row]));
             for row in rows.filter(|&row| !has_shapes || frame.phases[row] != Phase::Rigid) {
                 let material = colors.get(usize::from(frame.materials[row])).copied();
@@ -98,9 +110,14 @@ impl Still<'_> {
                     Some(_) => continue,
                     None => (material.unwrap_or(self.theme.faint_text), opacity),
                 };
-                sheet.disc(self.camera.particle(frame.positions[row]), radius, color, opacity);
+                let center = self.camera.particle(frame.positions[row]);
+                // What is cut away need not be in the file.
+                if (0..2).all(|axis| (-radius..=self.camera.size[axis] as f32 + radius).contains(&center[axis])) {
+                    sheet.disc(center, radius, color, opacity);
+                }
             }
         }
+        sheet.cut_to(None);
     }
 
     fn draw_solids(&self, sheet: &mut Sheet, scale: f32) {

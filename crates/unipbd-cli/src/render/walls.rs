@@ -47,6 +47,11 @@ impl Wall {
         stroke(paper, line(points, self.closed, camera), theme.wall_line, 1.8 * scale);
     }
 
+    /// The corners of what a closed wall surrounds; nothing for a block of wall, and for a line.
+    pub fn inside(&self) -> Option<&[Vector64]> {
+        (self.closed && area(&self.points) > 0.0).then_some(&self.points)
+    }
+
     /// The mirror images of a point in those straight pieces that have it before them, no farther
     /// away than `reach` [m], each with the direction out of its wall.
     pub fn mirror(&self, point: Vector64, reach: f64, mut image: impl FnMut(Vector64, Vector64)) {
@@ -60,6 +65,16 @@ impl Wall {
             }
         }
     }
+}
+
+/// What closed walls surround: gas and smoke are cut to it, as their soft edges reach farther than they do. Nothing
+/// where no wall is closed.
+pub(super) fn region(walls: &[Wall], camera: &Camera) -> Option<Path> {
+    let mut path = PathBuilder::new();
+    for corners in walls.iter().filter_map(Wall::inside) {
+        add_points(&mut path, corners.iter(), true, camera);
+    }
+    path.finish()
 }
 
 /// A straight piece of a wall.

@@ -21,6 +21,8 @@ pub struct LogFile {
     pub path: PathBuf,
     /// Its size [B].
     pub bytes: u64,
+    /// A layout of viewers for it.
+    pub layout: Option<PathBuf>,
 }
 
 impl LogFile {
@@ -116,7 +118,7 @@ impl Summary {
             simulated_per_wall: self.speed(),
             memory_bytes: self.memory_bytes,
             timings: self.timings.iter().map(|(stage, time)| (*stage, time.as_secs_f64())).collect(),
-            log: self.log.as_ref().map(|log| LogLine { path: log.path.display().to_string(), bytes: log.bytes }),
+            log: self.log.as_ref().map(LogLine::from),
         }
     }
 
@@ -156,11 +158,12 @@ impl Summary {
             Some(log) => {
                 let path = log.path.display();
                 let _ = writeln!(text, "  log            {path} ({})", bytes(log.bytes));
-                let _ = write!(
-                    text,
-                    "  open it        rerun {path}; Lichtblick with unipbd layout {path}; unipbd render {path} -o {}",
-                    self.picture(log)
-                );
+                let lichtblick = match &log.layout {
+                    Some(layout) => format!("Lichtblick with the layout {}", layout.display()),
+                    None => format!("Lichtblick with the layout of unipbd layout {path} -o {}", beside(log, "json")),
+                };
+                let film = beside(log, "gif");
+                let _ = write!(text, "  open it        {lichtblick}; rerun {path}; unipbd render {path} -o {film}");
             }
             None => text.truncate(text.trim_end().len()),
         }
@@ -199,10 +202,12 @@ impl Summary {
             let _ = writeln!(text, "    {stage:<20} {:>10}  {share:5.1} %", duration(*time));
         }
     }
+}
 
-    fn picture(&self, log: &LogFile) -> String {
-        log.path.with_extension("gif").file_name().map_or("pictures".into(), |name| name.to_string_lossy().into_owned())
-    }
+/// The name of a log with another ending.
+fn beside(log: &LogFile, extension: &str) -> String {
+    let name = log.path.with_extension(extension);
+    name.file_name().map_or("pictures".into(), |name| name.to_string_lossy().into_owned())
 }
 
 /// The last line of `run --json`.
@@ -250,4 +255,12 @@ struct SubstepsLine {
 struct LogLine {
     path: String,
     bytes: u64,
+    layout: Option<String>,
+}
+
+impl From<&LogFile> for LogLine {
+    fn from(log: &LogFile) -> Self {
+        let shown = |path: &PathBuf| path.display().to_string();
+        LogLine { path: shown(&log.path), bytes: log.bytes, layout: log.layout.as_ref().map(shown) }
+    }
 }

@@ -3,7 +3,7 @@
 use crate::support::Place;
 
 /// Kinds of scene, each with more than the 4,096 rows from which on loops are shared among threads.
-const SCENES: [(&str, &str); 7] = [
+const SCENES: [(&str, &str); 8] = [
     (
         "liquid",
         "spacing = 0.02\n[solver]\nsubsteps = 3\nsettle_substeps = 2\n[[liquid]]\nname = \"water\"\nxsph = 0.05\n\

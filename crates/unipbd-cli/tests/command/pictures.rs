@@ -104,3 +104,42 @@ fn help_of_render_names_every_option() {
         assert!(help.contains(word), "{word} is missing from:\n{help}");
     }
 }
+
+#[test]
+fn a_picture_of_the_same_run_is_made_anew_without_force_and_one_of_another_is_kept() {
+    let place = Place::new();
+    place.run(&["drop.toml", "-q"]).exits(0);
+    place.run(&["drop.toml", "-q", "--seed", "5", "--set", "gravity=[0, -1]", "-o", "other.mcap"]).exits(0);
+    for name in ["a.png", "a.svg", "a.pdf", "a.gif", "a.html"] {
+        place.run(&["render", "drop.mcap", "-o", name, "--width", "200"]).exits(0);
+        let first = std::fs::read(place.path(name)).unwrap();
+        let refused = place.run(&["render", "other.mcap", "-o", name]).exits(2);
+        assert!(refused.stderr().contains("not made from this run"), "{}", refused.stderr());
+        assert_eq!(std::fs::read(place.path(name)).unwrap(), first);
+        // The scene gives the run of the log.
+        place.run(&["render", "drop.toml", "-o", name, "--width", "240", "--background", "light"]).exits(0);
+        assert_ne!(std::fs::read(place.path(name)).unwrap(), first);
+    }
+    place.run(&["render", "drop.mcap", "-o", "f_%02d.png", "--every", "5", "--width", "100"]).exits(0);
+    place.run(&["render", "drop.mcap", "-o", "f_%02d.png", "--every", "5", "--width", "120"]).exits(0);
+}
+
+#[test]
+fn arrows_show_velocities_and_forces_in_pictures_and_films() {
+    let place = Place::new();
+    let with_body =
+        format!("{}\n[[body]]\nradius = 0.2\nposition = [1.5, 0.5]\ndensity = 500.0\n", crate::support::DROP);
+    place.write("body.toml", &with_body);
+    place.run(&["body.toml", "-q"]).exits(0);
+    for name in ["v.png", "v.svg", "v.pdf", "v.gif"] {
+        for vectors in ["velocity", "force"] {
+            let [plain, arrows] = [format!("plain_{name}"), format!("{vectors}_{name}")];
+            place.run(&["render", "body.mcap", "-o", &plain, "--width", "200"]).exits(0);
+            place.run(&["render", "body.mcap", "-o", &arrows, "--width", "200", "--vectors", vectors]).exits(0);
+            let [plain, arrows] = [plain, arrows].map(|name| std::fs::read(place.path(&name)).unwrap());
+            assert_ne!(plain, arrows, "{name} {vectors}");
+        }
+    }
+    let refused = place.run(&["render", "body.mcap", "-o", "a.html", "--vectors", "velocity"]).exits(2);
+    assert!(refused.stderr().contains("draws no arrows"), "{}", refused.stderr());
+}

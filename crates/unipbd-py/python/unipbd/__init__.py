@@ -36,6 +36,7 @@ from ._errors import (
 )
 from ._frame import Frame
 from ._gradient import Gradient, gradient
+from ._live import Live
 from ._log import Log, LogFrame, read_log
 from ._material import Material
 from ._native import __version__
@@ -68,6 +69,7 @@ __all__ = [
     "Frame",
     "Gradient",
     "Joint",
+    "Live",
     "Log",
     "LogFrame",
     "Material",

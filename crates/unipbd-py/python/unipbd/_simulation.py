@@ -15,6 +15,7 @@ from . import _native
 from ._arrays import Doubles, points
 from ._edit import Edit
 from ._frame import Frame
+from ._live import Live
 from ._picture import Drawable
 from ._recording import Recording
 from ._scene import Scene
@@ -249,6 +250,22 @@ class Simulation(Drawable):
         positions: ``"velocity,density,temperature"`` or ``"all"``. A file that is there is replaced.
         """
         return Recording(self, Path(path), self._stride(fps), fields)
+
+    def live(
+        self, address: str = "127.0.0.1:8765", speed: float = 1.0, paused: bool = False, fields: str = ""
+    ) -> Live:
+        """Lets Lichtblick or Foxglove watch and steer the run while it is stepped::
+
+            with sim.live() as live:
+                print(live.url)
+                sim.step(600)
+                live.hold()    # the last frame, until the viewers have left
+
+        `step` then keeps to `speed` simulated seconds per second, 0 is as fast as it can, and waits while a viewer
+        pauses the run. Viewers change gravity and motors as `edit` does. Port 0 takes a free one. `fields` names
+        columns as for `record`. Raises OSError where the address cannot be had.
+        """
+        return Live(self, address, speed, paused, fields)
 
 
 def _call(hook: Callable[[Substep], object]) -> Callable[[_native.Substep], None]:

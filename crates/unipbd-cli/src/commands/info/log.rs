@@ -1,7 +1,6 @@
 //! What is in a log.
 
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::path::Path;
 
 use serde::Serialize;
@@ -10,18 +9,11 @@ use unipbd_core::observe::Diagnostics;
 use unipbd_core::phase::Phase;
 
 use crate::exit::{Exit, Failure};
-use crate::read::{Log, LogError, Record, Records};
+use crate::read::{Log, LogError, Traffic, topics};
 use crate::report::clean::one_line;
 use crate::report::format::{bytes, count, percent, plural};
 use crate::report::json::Numbers;
 use crate::report::{Console, Form};
-
-/// Messages of a topic.
-#[derive(Clone, Copy, Debug, Default)]
-struct Traffic {
-    messages: u64,
-    bytes: u64,
-}
 
 /// What only a walk through the whole log tells.
 #[derive(Debug, Default)]
@@ -40,7 +32,7 @@ struct Content {
 pub(super) fn info(path: &Path, console: Console) -> Result<Exit, Failure> {
     let log = Log::open(path)?;
     let mut content = read_frames(&log)?;
-    content.topics = read_topics(path)?;
+    content.topics = topics(path)?;
     let size = path.metadata().map_or(0, |metadata| metadata.len());
     match console.form {
         Form::Json => console.object(&object(&log, &content, size))?,
@@ -67,29 +59,6 @@ fn read_frames(log: &Log) -> Result<Content, LogError> {
     }
     content.truncated = frames.truncated();
     Ok(content)
-}
-
-fn read_topics(path: &Path) -> Result<BTreeMap<String, Traffic>, LogError> {
-    let file = File::open(path).map_err(|cause| LogError::Io(path.to_owned(), cause))?;
-    let mut records = Records::new(file, path)?;
-    let mut names = BTreeMap::new();
-    let mut topics: BTreeMap<String, Traffic> = BTreeMap::new();
-    while let Some(record) = records.next()? {
-        match record {
-            Record::Channel { id, topic } => {
-                names.insert(id, topic);
-            }
-            Record::Message { channel, data, .. } => {
-                if let Some(name) = names.get(&channel) {
-                    let traffic = topics.entry(name.clone()).or_default();
-                    traffic.messages += 1;
-                    traffic.bytes += data.len() as u64;
-                }
-            }
-            _ => {}
-        }
-    }
-    Ok(topics)
 }
 
 fn text(log: &Log, content: &Content, size: u64) -> String {

@@ -1,7 +1,7 @@
 use std::borrow::Cow;
 use std::path::{Path, PathBuf};
 
-use gif::{DisposalMethod, Encoder, Frame, Repeat};
+use gif::{AnyExtension, DisposalMethod, Encoder, Extension, Frame, Repeat};
 
 use super::super::color::Rgb;
 use super::super::error::RenderError;
@@ -44,6 +44,7 @@ pub struct GifWriter {
     path: PathBuf,
     options: GifOptions,
     fps: f64,
+    mark: String,
     size: Option<(u32, u32)>,
     frames: Vec<Vec<u8>>,
 }
@@ -51,7 +52,13 @@ pub struct GifWriter {
 impl GifWriter {
     /// Starts a GIF that plays `fps` frames a second.
     pub fn new(path: &Path, fps: f64, options: GifOptions) -> GifWriter {
-        GifWriter { path: path.to_owned(), options, fps, size: None, frames: Vec::new() }
+        GifWriter { path: path.to_owned(), options, fps, mark: String::new(), size: None, frames: Vec::new() }
+    }
+
+    /// Adds a comment of at most 255 bytes.
+    #[must_use]
+    pub fn marked(self, mark: &str) -> GifWriter {
+        GifWriter { mark: mark.to_owned(), ..self }
     }
 
     /// Adds a frame; all must have the same size.
@@ -102,6 +109,9 @@ impl GifWriter {
             let table = [&matcher.palette().concat()[..], &[0; 3]].concat();
             let mut encoder = Encoder::new(Vec::new(), size[0], size[1], &table)?;
             encoder.set_repeat(Repeat::Infinite)?;
+            if !self.mark.is_empty() {
+                encoder.write_raw_extension(AnyExtension::from(Extension::Comment), &[self.mark.as_bytes()])?;
+            }
             let mut shown = Shown { ground: histogram.most_frequent(), ..Shown::default() };
             let mut clock = Clock { fps: self.fps / effort.thinning as f64, frames: 0 };
             for frame in self.frames.iter().step_by(effort.thinning) {

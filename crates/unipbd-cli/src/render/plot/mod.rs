@@ -9,6 +9,7 @@ use super::error::RenderError;
 use super::image::Image;
 use super::job::Existing;
 use super::options::Background;
+use super::origin::Origin;
 use super::output::{Output, plan_output};
 use super::paper::Paper;
 use super::sheet::Sheet;
@@ -29,7 +30,7 @@ pub struct Curve {
 }
 
 /// How a plot looks.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct PlotOptions {
     /// Width in pixels; the height follows from the number of panels.
     pub width: u32,
@@ -37,6 +38,8 @@ pub struct PlotOptions {
     pub background: Background,
     /// Whether an existing file may be replaced.
     pub existing: Existing,
+    /// The run it shows: a plot of the same run may be replaced.
+    pub origin: Origin,
 }
 
 /// Writes a plot as `NAME.svg`, `NAME.pdf` or `NAME.png`.
@@ -45,21 +48,22 @@ pub struct PlotOptions {
 /// For another ending, for a file that exists and may not be replaced or cannot be written.
 pub fn write_plot(curves: &[Curve], options: PlotOptions, path: &Path) -> Result<(), RenderError> {
     let output = plan_output(path).ok();
-    if options.existing == Existing::Keep && path.symlink_metadata().is_ok() {
+    let kept = options.existing == Existing::Keep && !options.origin.made(path);
+    if kept && path.symlink_metadata().is_ok() {
         return Err(RenderError::Exists(path.to_owned()));
     }
-    let plot = Plot::new(curves, options);
+    let (mark, plot) = (options.origin.mark(), Plot::new(curves, &options));
     let write = |bytes: Vec<u8>| {
         std::fs::write(path, bytes).map_err(|source| RenderError::Write { path: path.to_owned(), source })
     };
     match output {
-        Some(Output::Svg(_)) => write(plot.sheet().svg().into_bytes()),
-        Some(Output::Pdf(_)) => write(plot.sheet().pdf()),
+        Some(Output::Svg(_)) => write(plot.sheet().svg(mark).into_bytes()),
+        Some(Output::Pdf(_)) => write(plot.sheet().pdf(mark)),
         Some(Output::Picture(_)) => {
             let [width, height] = plot.size().map(|length| length.round() as u32);
             let mut image = Image::new(width, height, plot.theme.background)?;
             plot.draw(&mut image);
-            write_png(path, &image)
+            write_png(path, &image, mark)
         }
         _ => Err(RenderError::PlotFormat(path.to_owned())),
     }
@@ -75,7 +79,7 @@ struct Plot<'a> {
 
 impl<'a> Plot<'a> {
     /// Sorts the curves by unit, in the order in which units come.
-    fn new(curves: &'a [Curve], options: PlotOptions) -> Self {
+    fn new(curves: &'a [Curve], options: &PlotOptions) -> Self {
         let mut panels: Vec<Panel<'a>> = Vec::new();
         for (number, curve) in curves.iter().enumerate() {
             match panels.iter_mut().find(|panel| panel.unit == curve.unit) {

@@ -9,6 +9,8 @@ use crate::render::color::{self, ColorMap, css};
 use crate::render::fluids::material_colors;
 use crate::render::options::RenderOptions;
 use crate::render::theme::Theme;
+use crate::render::view::Camera;
+use crate::render::walls::Wall;
 use crate::render::{View, bodies};
 use crate::snapshot::Setting;
 
@@ -42,6 +44,8 @@ impl Description<'_> {
             "layers": self.layers(),
             "ramp": ramp,
             "columns": columns,
+            // What closed walls surround: soft layers are cut to it.
+            "region": self.region(view),
             "walls": {
                 "color": css(theme.wall_line),
                 "lines": self.setting.walls.iter().map(|wall| json!({
@@ -59,12 +63,19 @@ impl Description<'_> {
         named.map(|(material, color)| json!({ "name": material.name, "color": css(color) })).collect()
     }
 
+    fn region(&self, view: View) -> Vec<Vec<[f64; 2]>> {
+        let Ok(camera) = Camera::new(view, self.options.width) else { return Vec::new() };
+        let walls = self.setting.walls.iter().filter_map(|outline| Wall::new(outline, &camera));
+        let corners = |wall: Wall| Some(wall.inside()?.iter().map(|point| point.to_array()).collect());
+        walls.filter_map(corners).collect()
+    }
+
     /// Materials that are drawn one after the other: gas is a veil below all, smoke a veil above.
     fn layers(&self) -> Vec<Value> {
         let of = |passes: fn(Phase) -> bool, opacity: f64| {
             let all = self.setting.materials.iter().enumerate();
             let chosen: Vec<usize> = all.filter(|(_, of)| passes(of.phase)).map(|(index, _)| index).collect();
-            json!({ "materials": chosen, "opacity": opacity })
+            json!({ "materials": chosen, "opacity": opacity, "soft": passes(Phase::Gas) || passes(Phase::Smoke) })
         };
         let solid = |phase| !matches!(phase, Phase::Gas | Phase::Smoke | Phase::Rigid);
         vec![of(|phase| phase == Phase::Gas, 0.18), of(solid, 1.0), of(|phase| phase == Phase::Smoke, 0.35)]

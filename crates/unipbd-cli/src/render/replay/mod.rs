@@ -91,8 +91,8 @@ impl<'a> Replay<'a> {
         self.times.len() as u64
     }
 
-    /// Writes the page.
-    pub fn finish(self, path: &Path) -> Result<(), RenderError> {
+    /// Writes the page, with a mark of where it comes from.
+    pub fn finish(self, path: &Path, mark: &str) -> Result<(), RenderError> {
         let failed = |source| RenderError::Write { path: path.to_owned(), source };
         let columns: Vec<&Column> = self.columns.iter().filter(|column| column.recorded).collect();
         let ranges: Vec<[f32; 2]> = columns.iter().map(|column| column.range()).collect();
@@ -112,7 +112,8 @@ impl<'a> Replay<'a> {
         let data = self.packed(&columns, &ranges).map_err(failed)?;
         // A closing tag inside the text would end it.
         let head = head.to_string().replace("</", "<\\/");
-        let page = PAGE.replace("@PLAYER@", PLAYER).replace("@HEAD@", &head).replace("@DATA@", &data);
+        let page =
+            PAGE.replace("@MARK@", mark).replace("@PLAYER@", PLAYER).replace("@HEAD@", &head).replace("@DATA@", &data);
         std::fs::write(path, page).map_err(failed)
     }
 

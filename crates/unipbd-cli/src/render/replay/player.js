@@ -139,6 +139,15 @@
     const { scale, left, base } = camera;
     const quanta = scale * head.quantum;
     for (const layer of head.layers) {
+      pen.save();
+      if (layer.soft && head.region.length) {
+        pen.beginPath();
+        for (const corners of head.region) {
+          corners.forEach(([x, y], k) => pen[k ? "lineTo" : "moveTo"](x * scale + left, base - y * scale));
+          pen.closePath();
+        }
+        pen.clip();
+      }
       pen.globalAlpha = layer.opacity;
       for (let row = 0; row < frame.count; row++) {
         if (!layer.materials.includes(frame.materials[row])) continue;
@@ -147,6 +156,7 @@
         const y = base - scale * head.middle[1] - between(frame.places[1][row], next && next.places[1][row]) * quanta;
         pen.drawImage(disc, x - disc.width / 2, y - disc.width / 2);
       }
+      pen.restore();
     }
     pen.globalAlpha = 1;
     pen.lineWidth = Math.max(1.5, 0.002 * canvas.width);
