@@ -52,8 +52,8 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(query::body_velocities, module)?)?;
     module.add_function(wrap_pyfunction!(query::wake, module)?)?;
     module.add_function(wrap_pyfunction!(query::joints, module)?)?;
-    module.add_function(wrap_pyfunction!(world_edit::emitters, module)?)?;
-    module.add_function(wrap_pyfunction!(world_edit::ropes, module)?)?;
+    module.add_function(wrap_pyfunction!(query::emitters, module)?)?;
+    module.add_function(wrap_pyfunction!(query::ropes, module)?)?;
     module.add_function(wrap_pyfunction!(query::contacts, module)?)?;
     module.add_function(wrap_pyfunction!(query::watch_contacts, module)?)?;
     module.add_function(wrap_pyfunction!(query::contact_pairs, module)?)?;

@@ -1,12 +1,14 @@
-//! Questions to a simulation: bodies as arrays, joints, contacts, rays, places.
+//! Questions to a simulation: bodies as arrays, joints, emitters, ropes, contacts, rays, places.
 
 use numpy::ndarray::Array2;
 use numpy::{PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use unipbd_core::Vector64;
+use unipbd_core::edit::EmitterReading;
 use unipbd_core::rigid::contact::JointKind;
 use unipbd_core::rigid::{Body, Pose};
+use unipbd_core::scene::Emitter;
 use unipbd_core::step::{Query, Solid};
 
 use crate::errors;
@@ -82,6 +84,27 @@ pub fn joints<'py>(py: Python<'py>, solver: &Solver) -> PyResult<Vec<Bound<'py, 
         Ok(dict)
     };
     solver.joints().into_iter().map(dict).collect()
+}
+
+/// Name, material, middle of the face, speed, temperature, whether it runs, whether it was taken away.
+type EmitterRow = (String, String, (f64, f64), f64, f64, bool, bool);
+
+/// All emitters, by number.
+#[pyfunction]
+pub fn emitters(py: Python<'_>, solver: &Solver) -> PyResult<Vec<EmitterRow>> {
+    let readings = solver.lock(py)?.running.solver.emitters().into_iter();
+    let row = |reading: EmitterReading| {
+        let Emitter { name, material, position: [x, y], speed, temperature, .. } = reading.description;
+        (name, material, (x, y), speed, temperature, reading.running, reading.removed)
+    };
+    Ok(readings.map(row).collect())
+}
+
+/// Ids of the points, pieces that are cut, whether it was taken away, of each rope.
+#[pyfunction]
+pub fn ropes(py: Python<'_>, solver: &Solver) -> PyResult<Vec<(Vec<u32>, Vec<u32>, bool)>> {
+    let readings = solver.lock(py)?.running.solver.ropes().into_iter();
+    Ok(readings.map(|rope| (rope.points.collect(), rope.cuts, rope.removed)).collect())
 }
 
 fn kind(kind: &JointKind) -> &'static str {

@@ -4,13 +4,12 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use serde::Deserialize;
 use toml::Value;
-use unipbd_core::edit::{BodyChange, EmitterChange, EmitterReading};
+use unipbd_core::edit::{BodyChange, EmitterChange};
 use unipbd_core::rigid::contact::Motor;
 use unipbd_core::scene::{BodyDescription, BodyKind, Emitter, JointDescription, Rope};
 use unipbd_core::shapes::Shape;
 use unipbd_core::{Edit, Vector64};
 
-use crate::solver::Solver;
 use crate::{convert, errors};
 
 /// One change, named by its key `change`.
@@ -120,25 +119,4 @@ pub fn with_changes(py: Python<'_>, mut edit: Edit, changes: Vec<Bound<'_, PyDic
         };
     }
     Ok(edit)
-}
-
-/// Name, material, middle of the face, speed, temperature, whether it runs, whether it was taken away.
-type EmitterRow = (String, String, (f64, f64), f64, f64, bool, bool);
-
-/// All emitters, by number.
-#[pyfunction]
-pub fn emitters(py: Python<'_>, solver: &Solver) -> PyResult<Vec<EmitterRow>> {
-    let readings = solver.lock(py)?.running.solver.emitters().into_iter();
-    let row = |reading: EmitterReading| {
-        let Emitter { name, material, position: [x, y], speed, temperature, .. } = reading.description;
-        (name, material, (x, y), speed, temperature, reading.running, reading.removed)
-    };
-    Ok(readings.map(row).collect())
-}
-
-/// Ids of the points, pieces that are cut, whether it was taken away, of each rope.
-#[pyfunction]
-pub fn ropes(py: Python<'_>, solver: &Solver) -> PyResult<Vec<(Vec<u32>, Vec<u32>, bool)>> {
-    let readings = solver.lock(py)?.running.solver.ropes().into_iter();
-    Ok(readings.map(|rope| (rope.points.collect(), rope.cuts, rope.removed)).collect())
 }

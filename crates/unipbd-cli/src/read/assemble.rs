@@ -62,9 +62,11 @@ impl Assembler {
                 return Err("particle columns differ in length".to_owned());
             }
             self.materials.clear();
-            for material in &columns.material {
+            for (material, phase) in columns.material.iter().zip(&columns.phase) {
                 let index = MaterialIndex::try_from(*material).ok();
-                let index = index.filter(|index| usize::from(*index) < self.known_materials);
+                // Samples of bodies that came to a run without any have a material that it did not begin with.
+                let known = self.known_materials + usize::from(*phase == Phase::Rigid as u32);
+                let index = index.filter(|index| usize::from(*index) < known);
                 self.materials.push(index.ok_or_else(|| format!("there is no material {material}"))?);
             }
             self.phases.clear();

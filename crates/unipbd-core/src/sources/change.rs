@@ -25,10 +25,8 @@ impl EmitterChange {
         let mut emitter = emitter.clone();
         emitter.speed = self.speed.unwrap_or(emitter.speed);
         emitter.temperature = self.temperature.unwrap_or(emitter.temperature);
-        match self.on {
-            Some(true) => (emitter.start, emitter.stop) = (now, None),
-            Some(false) => (emitter.start, emitter.stop) = (emitter.start.min(now), Some(now)),
-            None => {}
+        if self.on == Some(true) {
+            (emitter.start, emitter.stop) = (emitter.start.min(now), None);
         }
         emitter
     }
@@ -77,6 +75,7 @@ impl EmitterSystem {
     pub(crate) fn change(&mut self, number: usize, change: &EmitterChange, kit: &Scene, now: f64) {
         let nozzle = &mut self.emitters[number];
         nozzle.description = change.applied(&nozzle.description, now);
+        nozzle.off = change.on.map_or(nozzle.off, |on| !on);
         nozzle.columns = columns(&nozzle.description, kit.spacing);
     }
 
@@ -91,7 +90,7 @@ impl EmitterSystem {
 
     /// The emitters as words, part of a saved state: their descriptions, then where they stand.
     pub fn save(&self) -> Vec<u64> {
-        let saved = |nozzle: &Nozzle| SavedEmitter::of(&nozzle.description, nozzle.removed);
+        let saved = |nozzle: &Nozzle| SavedEmitter::of(&nozzle.description, [nozzle.removed, nozzle.off]);
         let all: Vec<SavedEmitter> = self.emitters.iter().map(saved).collect();
         // Plain data in memory: writing cannot fail.
         let bytes = postcard::to_stdvec(&all).unwrap_or_default();
@@ -117,13 +116,13 @@ impl EmitterSystem {
         let mut words = words.iter().copied();
         let mut restored = Vec::new();
         for saved in all {
-            let (description, removed) = saved.emitter();
+            let (description, [removed, off]) = saved.emitter();
             if problem_of(&description, kit).is_some() {
                 return None;
             }
             let mut nozzle = Nozzle::new(&description, kit, Rng::new(0, 0));
             nozzle.state = EmitterState::from_words(&mut words, nozzle.columns.len())?;
-            nozzle.removed = removed;
+            (nozzle.removed, nozzle.off) = (removed, off);
             restored.push(RestoredEmitter(nozzle));
         }
         let columns = restored.iter().map(|emitter| emitter.0.columns.len());

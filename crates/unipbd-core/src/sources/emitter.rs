@@ -34,6 +34,8 @@ pub(super) struct Nozzle {
     pub description: Emitter,
     /// Whether it was taken away; its number is not given to another.
     pub removed: bool,
+    /// Whether it was switched off.
+    pub off: bool,
     position: Vector64,
     direction: Vector64,
     spacing: f64,
@@ -124,6 +126,7 @@ impl Nozzle {
         Nozzle {
             description: emitter.clone(),
             removed: false,
+            off: false,
             position: emitter.position.into(),
             direction: Vector64::from(emitter.direction).normalize_or(Vector64::Y),
             spacing,
@@ -141,7 +144,7 @@ impl Nozzle {
 
     pub fn is_active(&self, time: f64) -> bool {
         let Emitter { start, stop, .. } = self.description;
-        !self.removed && time >= start && stop.is_none_or(|stop| time < stop)
+        !self.removed && !self.off && time >= start && stop.is_none_or(|stop| time < stop)
     }
 
     fn will_change(&self, time: f64, dt: f64) -> bool {

@@ -2,7 +2,7 @@
 
 use crate::scene::{Emitter, Profile, Sheath, SmokeSource};
 
-/// The description of an emitter with every field, as formats without field names need it, and whether it was taken away.
+/// The description of an emitter with every field, as formats without field names need it, and what became of it.
 #[derive(serde::Serialize, serde::Deserialize)]
 pub(super) struct SavedEmitter {
     names: (String, String),
@@ -11,11 +11,12 @@ pub(super) struct SavedEmitter {
     schedule: (f64, Option<f64>, bool),
     sheath: Option<(f64, Option<f64>, f64)>,
     smoke: Option<(String, u32)>,
-    removed: bool,
+    /// Whether it was taken away, and whether it was switched off.
+    over: [bool; 2],
 }
 
 impl SavedEmitter {
-    pub fn of(emitter: &Emitter, removed: bool) -> Self {
+    pub fn of(emitter: &Emitter, over: [bool; 2]) -> Self {
         let Emitter { name, material, position, direction, width, speed, profile, temperature, .. } = emitter.clone();
         let Emitter { jitter, start, stop, throttle, sheath, smoke, .. } = emitter.clone();
         SavedEmitter {
@@ -25,11 +26,11 @@ impl SavedEmitter {
             schedule: (start, stop, throttle),
             sheath: sheath.map(|sheath| (sheath.thickness, sheath.speed, sheath.temperature)),
             smoke: smoke.map(|smoke| (smoke.material, smoke.per_particle)),
-            removed,
+            over,
         }
     }
 
-    pub fn emitter(self) -> (Emitter, bool) {
+    pub fn emitter(self) -> (Emitter, [bool; 2]) {
         let (name, material) = self.names;
         let (position, direction, width) = self.place;
         let (speed, profile, temperature, jitter) = self.flow;
@@ -52,7 +53,7 @@ impl SavedEmitter {
             sheath,
             smoke,
         };
-        (emitter, self.removed)
+        (emitter, self.over)
     }
 }
 

@@ -87,22 +87,17 @@ impl Solver {
         self.accept(state, fluids.as_ref(), &ropes)?;
         let emitters = self.saved_emitters(state)?;
         let generation = self.world.clock.generation;
+        let with_emitters = emitters.is_some();
+        let replanned = self.set_emitters(emitters);
         let world = &mut self.world;
         if let Some(fluids) = fluids {
             world.set_fluid_parts(fluids);
         }
         let mut sections = state.sections.iter();
         let mut next = || sections.next().map_or(&[][..], |section| &section.words);
-        let replanned = emitters.is_some() != world.parts.emitters.is_some();
-        world.parts.emitters = match emitters {
-            None => None,
-            Some(saved) => {
-                next();
-                let mut system = world.parts.emitters.take().unwrap_or_else(EmitterSystem::none);
-                system.restore(saved);
-                Some(system)
-            }
-        };
+        if with_emitters {
+            next();
+        }
         if let Some(smoke) = &mut world.parts.smoke {
             smoke.set_last_dt(real(next().first().copied().map_or(0.0, f64::from_bits)));
         }
@@ -158,6 +153,17 @@ impl Solver {
             return Err(damaged("its ropes make no sense"));
         }
         Ok(ropes)
+    }
+
+    /// Takes these emitters, or none; tells whether the stages are others then.
+    fn set_emitters(&mut self, saved: Option<Vec<RestoredEmitter>>) -> bool {
+        let before = self.world.emits();
+        let emitters = &mut self.world.parts.emitters;
+        match saved {
+            None => *emitters = None,
+            Some(saved) => emitters.get_or_insert_with(EmitterSystem::none).restore(saved),
+        }
+        self.world.emits() != before
     }
 
     /// The emitters of a state, if it has any.

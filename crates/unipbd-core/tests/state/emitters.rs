@@ -50,7 +50,10 @@ fn a_tap_is_opened_turned_up_closed_and_taken_away() {
     let mut solver = build(&liquid());
     run(&mut solver, 20);
     assert!(solver.emitters().is_empty());
-    solver.apply(&Edit::new().add_emitter(Emitter { throttle: false, ..tap() })).expect("it fits");
+    let off = Edit::new().add_emitter(Emitter { throttle: false, ..tap() }).change_emitter(0, switch(false));
+    solver.apply(&off).expect("it fits");
+    assert_eq!(emitted(&mut solver, 3), 0);
+    solver.apply(&Edit::new().change_emitter(0, switch(true))).expect("it is there");
     let slow = emitted(&mut solver, 30);
     solver.apply(&Edit::new().change_emitter(0, speed(4.0))).expect("it is there");
     let fast = emitted(&mut solver, 30);

@@ -39,7 +39,8 @@ class LogFrame:
         positions: positions [m], float32, shape (N, 2).
         ids: ids, uint32, shape (N,).
         phases: phases, uint8, shape (N,).
-        material_indices: indices into `Log.materials`, uint16, shape (N,).
+        material_indices: indices into `Log.materials`, uint16, shape (N,); samples of bodies that came to a run of fluids
+            without any have the next index.
         velocities: velocities [m/s], float32, shape (N, 2), where they were recorded.
         density_errors: density errors C = rho/rho0 - 1, as fractions, float32, shape (N,), where
             they were recorded.
