@@ -17,9 +17,14 @@ const NO_FILE: &str = "scene";
 
 /// The scene of a TOML text as a dict with all its defaults. Files that it names are read from the folder.
 #[pyfunction]
-#[pyo3(signature = (text, file_name="scene.toml", folder=PathBuf::new()))]
-pub fn parse_scene<'py>(py: Python<'py>, text: &str, file_name: &str, folder: PathBuf) -> PyResult<Bound<'py, PyDict>> {
-    let loaded = scene_file::parse_in(&folder, text, file_name, &[])
+#[pyo3(signature = (text, file_name="scene.toml", folder=None))]
+pub fn parse_scene<'py>(
+    py: Python<'py>,
+    text: &str,
+    file_name: &str,
+    folder: Option<PathBuf>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let loaded = scene_file::parse_in(&folder.unwrap_or_default(), text, file_name, &[])
         .map_err(|error| errors::scene(py, error, Written::InFile))?;
     to_dict(py, &loaded.scene)
 }
