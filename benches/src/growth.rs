@@ -13,7 +13,7 @@ use crate::scenes::solver;
 pub struct Point {
     /// Particles.
     pub particles: usize,
-    /// Mean time of a frame of 1/60 s [ms].
+    /// Mean time of a frame of 1/60 s \[ms].
     pub milliseconds: f64,
 }
 

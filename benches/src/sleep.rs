@@ -7,7 +7,7 @@ use unipbd_core::scene::{Block, Liquid, Scene, SolverSettings, Substeps, Tank};
 
 use crate::solver;
 
-/// Spacing of a pool 4 m wide and 1 m deep: 10,000 particles [m].
+/// Spacing of a pool 4 m wide and 1 m deep: 10,000 particles \[m].
 const SPACING: f64 = 0.02;
 
 /// Milliseconds per frame of a pool: awake, and asleep. `None` where it did not fall asleep in `frames`.

@@ -15,7 +15,7 @@ const SUBSTEPS: u32 = 4;
 pub struct Measured {
     /// Number of particles.
     pub particles: usize,
-    /// The least over all frames, on one and on two threads [ns].
+    /// The least over all frames, on one and on two threads \[ns].
     pub least: [f64; 2],
     /// Memory of particles, lists and indexes [bytes per particle].
     pub bytes: f64,

@@ -10,7 +10,7 @@ use std::time::{Duration, Instant};
 
 use unipbd_core::rng::Rng;
 
-/// Most memory that a case may hold beside what was held before [bytes].
+/// Most memory that a case may hold beside what was held before \[bytes].
 const MOST_MEMORY: usize = 1 << 30;
 
 /// Counts what is held.

@@ -9,7 +9,7 @@ fn energy(solver: &Solver) -> f64 {
     diagnostics.kinetic_energy + diagnostics.potential_energy
 }
 
-/// The default kernel radius and the faster one [spacings].
+/// The default kernel radius and the faster one \[spacings].
 const RADII: [f64; 2] = [3.0, 2.5];
 
 #[test]

@@ -30,7 +30,7 @@ position = [0.0, 0.15]
 density = 2500.0
 "#;
 
-/// Depth of the deepest fluid particle inside a body [m].
+/// Depth of the deepest fluid particle inside a body \[m].
 fn deepest(solver: &Solver, body: &Body) -> f64 {
     let shape = unipbd_core::shapes::Shape::Polygon(body.outline.clone());
     let fluid = solver.positions().iter().zip(solver.phases()).filter(|(_, phase)| phase.is_fluid());

@@ -22,7 +22,7 @@ fn fluid(solver: &Solver) -> impl Iterator<Item = (Vector64, Vector64)> {
     rows.filter(|(_, phase)| phase.is_fluid()).map(|((x, v), _)| (wide(*x), wide(*v)))
 }
 
-/// Depth of the deepest fluid particle inside any body [m].
+/// Depth of the deepest fluid particle inside any body \[m].
 fn deepest(solver: &Solver) -> f64 {
     let mut deepest = f64::NEG_INFINITY;
     for body in solver.bodies() {
@@ -154,7 +154,7 @@ fn water_in_a_drum_goes_on_turning() {
     }
 }
 
-/// Forces of the fluid on all bodies, mean over a second after three [N].
+/// Forces of the fluid on all bodies, mean over a second after three \[N].
 fn forces(solver: &mut Solver) -> Vec<Vector64> {
     run(solver, 180, |_| ());
     let mut sums = vec![Vector64::ZERO; solver.bodies().len()];

@@ -23,7 +23,7 @@ struct Plume {
     compression: Spread,
     fastest: Spread,
     crowd: Spread,
-    /// Top of the smoke at 0.83 s [m].
+    /// Top of the smoke at 0.83 s \[m].
     top: f64,
 }
 

@@ -24,7 +24,7 @@ fn energy(solver: &Solver) -> f64 {
     solver.diagnostics().energy()
 }
 
-/// Largest energy gained in a run, as a part of `scale` [J].
+/// Largest energy gained in a run, as a part of `scale` \[J].
 fn energy_gained(solver: &mut Solver, frames: u64, scale: f64, mut look: impl FnMut(&Solver)) -> f64 {
     let start = energy(solver);
     let mut most = 0.0_f64;
@@ -372,7 +372,7 @@ fn gas_liquid_and_bodies_give_the_same_bits_on_any_number_of_threads_and_after_a
 }
 
 /// The worst of two seconds of a tank of water 2.5 m deep with these bodies: speed of the water [dx/s], its mean
-/// compression, and how far a body moves [dx].
+/// compression, and how far a body moves \[dx].
 fn worst_beside(bodies: &str) -> [f64; 3] {
     let dx = 0.05;
     let rest = format!("[[tank]]\nmin = [0.0, 0.0]\nmax = [3.0, 4.0]\n{bodies}");

@@ -54,7 +54,7 @@ fn markers(solver: &Solver) -> Vec<(u32, Vector64)> {
     markers
 }
 
-/// Runs until the markers are free, then for `turn` [s]; returns the largest distance from the exact
+/// Runs until the markers are free, then for `turn` \[s]; returns the largest distance from the exact
 /// place over the length of the path.
 fn error_after(
     scene: &Scene,

@@ -24,7 +24,7 @@ fn water(points: &[Vector64], velocities: &[Vector64], keys: &str, tables: &str)
     scene
 }
 
-/// The points of a square lattice in a disc [m].
+/// The points of a square lattice in a disc \[m].
 fn disc(radius: f64, center: Vector64) -> Vec<Vector64> {
     let reach = radius.ceil() as i32;
     let all = (-reach..reach).flat_map(|i| (-reach..reach).map(move |j| Vector64::new(f64::from(i), f64::from(j))));

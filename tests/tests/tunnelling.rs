@@ -9,7 +9,7 @@ use unipbd_core::{Phase, Vector64};
 use unipbd_tests::{build, run, scene};
 
 const SPACING: f64 = 0.1;
-/// Side of the box that holds all [m].
+/// Side of the box that holds all \[m].
 const HEIGHT: f64 = 4.0;
 
 /// A drop of water and three bodies at 10 sqrt(2 g H).
@@ -93,7 +93,7 @@ fn half_planes(mut scene: Scene) -> Scene {
     scene
 }
 
-/// How far a point is outside of what [`sides`] or [`half_planes`] enclose [m].
+/// How far a point is outside of what [`sides`] or [`half_planes`] enclose \[m].
 fn outside(scene: &Scene, x: Vector64) -> f64 {
     let behind = |plane: &HalfPlane| (Vector64::from(plane.point) - x).dot(Vector64::from(plane.normal).normalize());
     if scene.half_plane.is_empty() {
@@ -103,7 +103,7 @@ fn outside(scene: &Scene, x: Vector64) -> f64 {
     }
 }
 
-/// Runs two seconds; returns how far water, and the centre of a body, came out [m].
+/// Runs two seconds; returns how far water, and the centre of a body, came out \[m].
 fn farthest(scene: &Scene) -> (f64, f64) {
     let mut solver = build(scene, 2);
     let (mut water, mut bodies) = (f64::NEG_INFINITY, f64::NEG_INFINITY);

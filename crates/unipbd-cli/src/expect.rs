@@ -18,10 +18,10 @@ pub struct Watch {
     density_error_max: f64,
     substeps: u32,
     speed: f64,
-    /// Energy at the start [J], and what of it can be given away.
+    /// Energy at the start \[J], and what of it can be given away.
     start: Option<(f64, f64)>,
     energy: f64,
-    /// Deepest point inside a wall [m], and when.
+    /// Deepest point inside a wall \[m], and when.
     deepest: (f64, f64),
 }
 
@@ -64,7 +64,7 @@ impl Watch {
         }
     }
 
-    /// Kinetic and potential energy of particles and dynamic bodies [J].
+    /// Kinetic and potential energy of particles and dynamic bodies \[J].
     fn energy(&self, diagnostics: &Diagnostics, solver: &Solver) -> f64 {
         let of = |body: &Body| {
             let kinetic = body.mass * body.velocity.length_squared()
@@ -75,7 +75,7 @@ impl Watch {
         diagnostics.kinetic_energy + diagnostics.potential_energy + bodies
     }
 
-    /// Potential energy if everything lay at the lowest point [J].
+    /// Potential energy if everything lay at the lowest point \[J].
     fn lowest_energy(&self, solver: &Solver) -> f64 {
         let particles = solver.particles();
         let heavy = || (0..particles.len()).filter(|&row| particles.inverse_masses()[row] > 0.0);
@@ -135,7 +135,7 @@ fn dynamic(solver: &Solver) -> impl Iterator<Item = &Body> {
     solver.bodies().iter().filter(|body| body.kind == BodyKind::Dynamic)
 }
 
-/// How far a free particle or the centre of a dynamic body is inside a wall [m].
+/// How far a free particle or the centre of a dynamic body is inside a wall \[m].
 fn depth_in_walls(solver: &Solver) -> f64 {
     let walls = solver.walls();
     let particles = solver.particles();

@@ -8,9 +8,9 @@ use unipbd_core::rigid::Body;
 /// One output frame.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Snapshot {
-    /// Simulated time [s].
+    /// Simulated time \[s].
     pub time: f64,
-    /// Positions [m].
+    /// Positions \[m].
     pub positions: Vec<[f32; 2]>,
     /// Stable ids.
     pub ids: Vec<u32>,
@@ -54,12 +54,12 @@ impl Snapshot {
 pub struct Setting {
     /// Title of the scene.
     pub name: String,
-    /// Rest distance of particles [m].
+    /// Rest distance of particles \[m].
     pub spacing: f64,
     /// Name, phase and colour of each material.
     pub materials: Vec<unipbd_core::observe::Material>,
     /// Walls to draw.
     pub walls: Vec<WallOutline>,
-    /// Region to show, lower left and upper right [m], where the scene names one.
+    /// Region to show, lower left and upper right \[m], where the scene names one.
     pub view: Option<([f64; 2], [f64; 2])>,
 }

@@ -72,11 +72,11 @@ impl ConstraintGroup for Chain {
 
 /// What the run came to.
 pub struct End {
-    /// Largest distance of a bead from the ring [m].
+    /// Largest distance of a bead from the ring \[m].
     pub off_ring: f64,
     /// Largest relative error of a link.
     pub stretch: f64,
-    /// Height of the lowest bead [m].
+    /// Height of the lowest bead \[m].
     pub lowest: f64,
 }
 

@@ -11,7 +11,7 @@ use unipbd_core::scene::{BodyDescription, BodyKind, MotionDescription, Obstacle,
 use unipbd_core::step::Solid;
 use unipbd_core::{BuildOptions, Solver, Vector64};
 
-/// Columns and rows of the picture, and what it shows: from the lower left to the upper right corner [m].
+/// Columns and rows of the picture, and what it shows: from the lower left to the upper right corner \[m].
 const PICTURE: (usize, usize) = (72, 24);
 const VIEW: ([f64; 2], [f64; 2]) = ([-3.0, -0.3], [3.0, 3.7]);
 

@@ -113,7 +113,7 @@ fn damaged(what: &'static str) -> Damage {
     Damage(what)
 }
 
-/// Memory held by a column [bytes].
+/// Memory held by a column \[bytes].
 #[allow(clippy::ptr_arg)] // What counts is the capacity.
 pub(crate) fn held<T>(column: &Vec<T>) -> usize {
     column.capacity() * size_of::<T>()

@@ -58,7 +58,7 @@ pub fn wide(value: Vector) -> Vector64 {
     Vector64::new(value.x as f64, value.y as f64)
 }
 
-/// The unit vector at an angle from the x axis [rad].
+/// The unit vector at an angle from the x axis \[rad].
 ///
 /// The functions beyond square roots are those of the crate `libm` throughout the core: systems round theirs
 /// differently, and a scene shall give the same bits on all of them.
@@ -68,7 +68,7 @@ pub fn direction(angle: f64) -> Vector64 {
     Vector64::new(cos, sin)
 }
 
-/// The angle of a vector from the x axis [rad].
+/// The angle of a vector from the x axis \[rad].
 #[inline]
 pub fn angle_of(vector: Vector64) -> f64 {
     libm::atan2(vector.y, vector.x)

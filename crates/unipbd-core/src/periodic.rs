@@ -5,9 +5,9 @@ use crate::math::{Real, Vector};
 /// An axis that repeats itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeriodicAxis {
-    /// Where the period starts [m].
+    /// Where the period starts \[m].
     pub from: Real,
-    /// Its length [m].
+    /// Its length \[m].
     pub length: Real,
 }
 

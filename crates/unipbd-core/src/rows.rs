@@ -49,7 +49,7 @@ impl RowIndex {
         }
     }
 
-    /// Memory held [bytes].
+    /// Memory held \[bytes].
     pub(crate) fn memory_bytes(&self) -> usize {
         held(&self.rows) + held(&self.scattered)
     }

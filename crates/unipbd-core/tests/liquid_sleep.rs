@@ -46,7 +46,7 @@ fn drop_in(solver: &mut Solver, x: f64, y: f64) {
     solver.apply(&Edit::new().add_points(Points::new("water", drop))).expect("there is room");
 }
 
-/// Heights of the centre of mass and of the surface, the mean over columns four spacings wide [m].
+/// Heights of the centre of mass and of the surface, the mean over columns four spacings wide \[m].
 fn heights(solver: &Solver) -> (f64, f64) {
     let liquid = || solver.positions().iter().zip(solver.phases()).filter(|(_, phase)| **phase == Phase::Liquid);
     let mean = liquid().map(|(x, _)| f64::from(x.y)).sum::<f64>() / liquid().count() as f64;

@@ -12,7 +12,7 @@ fn grid() -> SolverSettings {
     SolverSettings { pressure_grid: PressureGridUse::On, ..SolverSettings::default() }
 }
 
-/// Water of this width and depth in the left of a tank of this width [m], at 10 particles per metre.
+/// Water of this width and depth in the left of a tank of this width \[m], at 10 particles per metre.
 fn pool(water: [f64; 2], tank: f64) -> Scene {
     let tank = Tank { name: "tank".into(), ..Tank::new([0.0, 0.0], [tank, water[1] + 2.0]) };
     Scene {
@@ -120,7 +120,7 @@ fn the_bits_do_not_depend_on_threads_or_on_a_pause() {
     assert_eq!(one.diagnostics(), other.diagnostics());
 }
 
-/// Two drops that meet in a domain without end, about this place [m].
+/// Two drops that meet in a domain without end, about this place \[m].
 fn meeting_drops(at: f64) -> Scene {
     let drop = |x: f64, velocity: [f64; 2]| Disc {
         material: "water".into(),

@@ -37,7 +37,7 @@ use repair::Repair;
 use source::{Fault, Sources};
 use tree::Node;
 
-/// Larger files are refused unread [byte].
+/// Larger files are refused unread \[byte].
 const LARGEST_FILE: u64 = 4 << 20;
 
 /// A scene and the text it came from.

@@ -4,7 +4,7 @@ use std::ops::Range;
 
 /// Bytes between two counts of characters.
 const STRIDE: usize = 1024;
-/// Longest excerpt of a line [bytes].
+/// Longest excerpt of a line \[bytes].
 const EXCERPT: usize = 4 * STRIDE;
 
 /// A text with the places of its lines and characters.

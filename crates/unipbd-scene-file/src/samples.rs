@@ -11,7 +11,7 @@ use super::diagnostic::printable;
 use super::source::{Fault, FaultKind};
 use super::tree::Node;
 
-/// Larger files are refused unread [byte].
+/// Larger files are refused unread \[byte].
 const LARGEST: u64 = 16 << 20;
 
 /// What is wrong with a file: a message that names it, and what to do.

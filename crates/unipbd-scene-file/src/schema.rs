@@ -13,16 +13,24 @@ pub fn schema() -> Value {
     schema
 }
 
-/// Takes out what TOML has not (null) and writes the bounds of integers out.
+/// Takes out what TOML has not (null), writes the bounds of integers out and units as they read.
 fn tidy(value: &mut Value) {
     match value {
         Value::Array(elements) => elements.iter_mut().for_each(tidy),
         Value::Object(object) => {
             bound_integers(object);
             drop_null(object);
+            unescape(object);
             object.values_mut().for_each(tidy);
         }
         _ => {}
+    }
+}
+
+/// Rustdoc takes `[m]` for a link, so that the sources write `\[m]`.
+fn unescape(object: &mut Map<String, Value>) {
+    if let Some(Value::String(text)) = object.get_mut("description") {
+        *text = text.replace("\\[", "[");
     }
 }
 

@@ -7,11 +7,11 @@
 /// Estimates the density errors of a liquid in a tank whose lower left corner is the origin.
 #[derive(Clone, Copy, Debug)]
 pub struct Estimator {
-    /// Spacing of the lattice at rest [m].
+    /// Spacing of the lattice at rest \[m].
     pub spacing: f64,
     /// Radius of the spline, in spacings.
     pub radius: f64,
-    /// Size of the tank [m].
+    /// Size of the tank \[m].
     pub tank: [f64; 2],
 }
 
@@ -88,7 +88,7 @@ struct Cells {
     reach: f64,
     counts: [usize; 2],
     rows: Vec<Vec<usize>>,
-    /// Highest particle of each column of cells [m].
+    /// Highest particle of each column of cells \[m].
     tops: Vec<f64>,
 }
 
@@ -110,7 +110,7 @@ impl Cells {
         [0, 1].map(|axis| ((x[axis] / self.reach).max(0.0) as usize).min(self.counts[axis] - 1))
     }
 
-    /// The lowest surface of this column and those beside it that lie in the tank [m].
+    /// The lowest surface of this column and those beside it that lie in the tank \[m].
     fn lowest_top(&self, x: &[f64; 2]) -> f64 {
         let column = self.of(x)[0];
         let columns = column.saturating_sub(1)..=(column + 1).min(self.counts[0] - 2);

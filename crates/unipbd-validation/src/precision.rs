@@ -14,7 +14,7 @@ pub const HEADING: &str = "Single and double precision";
 /// Rest distance [m]: a power of two, so that walls and lattices lie at the same places in f32 far out too,
 /// and what differs is the solver's doing.
 const SPACING: f64 = 0.125;
-/// How far from the origin far is [spacings].
+/// How far from the origin far is \[spacings].
 pub const FAR: f64 = 1e5;
 
 /// What one run showed.

@@ -132,7 +132,7 @@ impl Runner {
         Ok(())
     }
 
-    /// Moves every particle of the start by a field [m].
+    /// Moves every particle of the start by a field \[m].
     ///
     /// # Errors
     /// When the solver refuses the positions.
@@ -157,7 +157,7 @@ impl Runner {
     }
 }
 
-/// All positions [m].
+/// All positions \[m].
 pub fn points(solver: &Solver) -> impl Iterator<Item = Vector64> + '_ {
     solver.positions().iter().map(|position| wide(*position))
 }
@@ -167,12 +167,12 @@ pub fn velocities(solver: &Solver) -> impl Iterator<Item = Vector64> + '_ {
     solver.velocities().iter().map(|velocity| wide(*velocity))
 }
 
-/// Positions of one material [m].
+/// Positions of one material \[m].
 pub fn points_of(solver: &Solver, material: MaterialIndex) -> impl Iterator<Item = Vector64> + '_ {
     points(solver).zip(solver.material_indices()).filter(move |(_, of)| **of == material).map(|(x, _)| x)
 }
 
-/// Kinetic and potential energy [J].
+/// Kinetic and potential energy \[J].
 pub fn energy(solver: &Solver) -> f64 {
     let diagnostics = solver.diagnostics();
     diagnostics.kinetic_energy + diagnostics.potential_energy

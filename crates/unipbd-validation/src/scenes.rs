@@ -4,7 +4,7 @@ use unipbd_core::scene::{Block, BodyDescription, Emitter, HalfPlane, Liquid, Pro
 
 use crate::case::Trial;
 
-/// Spacing of the free-surface cases [m].
+/// Spacing of the free-surface cases \[m].
 pub const SPACING: f64 = 0.1;
 /// Gravity [m/s^2].
 pub const GRAVITY: f64 = 9.81;

@@ -203,7 +203,7 @@ impl Timed {
         self.outcomes.len() == rounds as usize
     }
 
-    /// Least processor time [s].
+    /// Least processor time \[s].
     fn time(&self) -> f64 {
         self.outcomes.iter().map(|outcome| outcome.cost.processor.as_secs_f64()).fold(f64::INFINITY, f64::min)
     }
@@ -261,7 +261,7 @@ fn worst_of_dam_break(resolution: u32, trial: &Trial) -> f64 {
 }
 
 impl Swept {
-    /// The curves of one figure over processor time [s], with the front marked, and their rows of the table.
+    /// The curves of one figure over processor time \[s], with the front marked, and their rows of the table.
     pub fn curves(&self, norm: &Norm) -> (Vec<Curve>, String) {
         let rounds = rounds(self.case);
         let done = || self.points.iter().filter(|point| point.is_done(rounds));

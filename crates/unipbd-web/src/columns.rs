@@ -8,7 +8,7 @@ use crate::Session;
 /// A column. Rows are particles in an order that changes from frame to frame; ids are stable.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Column {
-    /// Two numbers each [m].
+    /// Two numbers each \[m].
     Positions,
     /// Two numbers each [m/s].
     Velocities,
@@ -20,10 +20,10 @@ pub enum Column {
     Ids,
     /// Numbers of materials in the description of the scene.
     Materials,
-    /// Of each body: x, y [m], angle [rad], and 1, or 0 for one that was taken away.
+    /// Of each body: x, y \[m], angle \[rad], and 1, or 0 for one that was taken away.
     Poses,
-    /// Of each body: the number of corners, then theirs in the world [m]; a disc has 1 corner, its centre, then radius
-    /// [m] and angle [rad]; one that was taken away has 0.
+    /// Of each body: the number of corners, then theirs in the world \[m]; a disc has 1 corner, its centre, then radius
+    /// \[m] and angle \[rad]; one that was taken away has 0.
     Outlines,
 }
 

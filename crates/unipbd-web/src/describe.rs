@@ -43,7 +43,7 @@ fn body(body: &Body) -> Value {
     json!({ "name": body.name, "radius": body.radius, "outline": outline, "mass": body.mass, "fixed": fixed })
 }
 
-/// The corners of all that is there [m].
+/// The corners of all that is there \[m].
 fn extent(solver: &Solver) -> ([f64; 2], [f64; 2]) {
     let ends = solver.wall_outlines().iter().filter(|wall| !wall.endless);
     let walls = ends.flat_map(|wall| wall.points.iter().map(|point| point.to_array()));

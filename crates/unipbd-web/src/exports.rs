@@ -139,7 +139,7 @@ pub unsafe extern "C" fn unipbd_frame(run: *mut Session) -> u32 {
     unsafe { session(run).solver.frame() as u32 }
 }
 
-/// Simulated time [s].
+/// Simulated time \[s].
 ///
 /// # Safety
 /// As for the whole file.
@@ -220,7 +220,7 @@ pub unsafe extern "C" fn unipbd_grab(run: *mut Session, x: f64, y: f64) -> i32 {
     unsafe { session(run).grab(Vector64::new(x, y)) }.map_or(-1, |body| body as i32)
 }
 
-/// Moves the hand to a point [m].
+/// Moves the hand to a point \[m].
 ///
 /// # Safety
 /// As for the whole file.

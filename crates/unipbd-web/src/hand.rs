@@ -13,9 +13,9 @@ const STIFFNESS: f64 = 14.0;
 #[derive(Clone, Copy, Debug)]
 pub struct Hand {
     body: u32,
-    /// The point it was taken at, in body coordinates [m].
+    /// The point it was taken at, in body coordinates \[m].
     anchor: Vector64,
-    /// Where the pointer is [m].
+    /// Where the pointer is \[m].
     pub target: Vector64,
 }
 

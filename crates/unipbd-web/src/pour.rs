@@ -8,7 +8,7 @@ use unipbd_core::{Edit, Solver, Vector64};
 
 /// Most particles that one call adds.
 const MOST: f64 = 4096.0;
-/// Least distance to what is there [spacings].
+/// Least distance to what is there \[spacings].
 const CLEARANCE: f64 = 0.97;
 
 /// Fills the free places of a lattice within a disc; returns the number of particles.

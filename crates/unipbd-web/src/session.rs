@@ -84,13 +84,13 @@ impl Session {
         report.map(|report| report.substeps).map_err(|error| answer::failure(&error.to_string()))
     }
 
-    /// Takes hold of the body at a point of the world [m]; returns its number.
+    /// Takes hold of the body at a point of the world \[m]; returns its number.
     pub fn grab(&mut self, point: Vector64) -> Option<u32> {
         self.hand = Hand::at(&self.solver, point);
         self.hand.map(|hand| hand.body())
     }
 
-    /// Moves the hand [m].
+    /// Moves the hand \[m].
     pub fn drag(&mut self, point: Vector64) {
         self.hand.iter_mut().for_each(|hand| hand.target = point);
     }
@@ -100,7 +100,7 @@ impl Session {
         self.hand = None;
     }
 
-    /// Fills the free places of a disc [m] with a material; returns the number of particles.
+    /// Fills the free places of a disc \[m] with a material; returns the number of particles.
     ///
     /// # Errors
     /// Why nothing could be added, as JSON.

@@ -1,4 +1,6 @@
 //! The arguments of the command line.
+// The command prints these texts as they are, with units such as [s].
+#![allow(rustdoc::broken_intra_doc_links)]
 
 mod bench;
 mod dispatch;

@@ -75,7 +75,7 @@ impl Cost {
 /// The beginning of a run.
 struct Pilot {
     first_frame: Result<u32, SolverError>,
-    /// Simulated time [s] and wall-clock time [s] at the end of each frame.
+    /// Simulated time \[s] and wall-clock time \[s] at the end of each frame.
     frames: Vec<(f64, f64)>,
 }
 

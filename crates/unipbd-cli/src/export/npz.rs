@@ -2,8 +2,8 @@
 //!
 //! | array | shape | type | |
 //! |---|---|---|---|
-//! | `time` | (T,) | f64 | simulated time [s] |
-//! | `position` | (T, N, 2) | f32 | places [m]; NaN where a particle is not there |
+//! | `time` | (T,) | f64 | simulated time \[s] |
+//! | `position` | (T, N, 2) | f32 | places \[m]; NaN where a particle is not there |
 //! | `velocity`, `density_error`, `temperature` | (T, N, 2), (T, N), (T, N) | f32 | what the log was asked to hold |
 //! | `id`, `phase`, `material` | (N,) | u32, u8, u16 | of each column; the phase by its number |
 //! | `body_pose`, `body_velocity` | (T, B, 3) | f64 | x, y, angle, and their rates |

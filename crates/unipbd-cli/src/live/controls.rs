@@ -45,7 +45,7 @@ pub struct Controls {
     requests: Requests,
     /// Topics with new subscribers.
     newcomers: Topics,
-    /// Simulated time [ns].
+    /// Simulated time \[ns].
     time: u64,
 }
 
@@ -64,7 +64,7 @@ impl Controls {
         controls
     }
 
-    /// Notes the simulated time [s].
+    /// Notes the simulated time \[s].
     pub fn see(&mut self, time: f64) {
         self.time = crate::record::nanoseconds(time);
     }

@@ -27,7 +27,7 @@ impl Pace {
         self.anchor = None;
     }
 
-    /// When a run at this simulated time [s] may go on, at this many simulated seconds per second; `None` is at once.
+    /// When a run at this simulated time \[s] may go on, at this many simulated seconds per second; `None` is at once.
     pub fn due(&mut self, time: f64, speed: f64, now: Instant) -> Option<Instant> {
         if speed <= 0.0 {
             self.anchor = None;

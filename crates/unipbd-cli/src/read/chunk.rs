@@ -4,16 +4,16 @@ use std::io::Read;
 
 use super::wire::Wire;
 
-/// Smallest bound on what a chunk unpacks to [bytes]...
+/// Smallest bound on what a chunk unpacks to \[bytes]...
 const LEAST_BOUND: u64 = 64 << 20;
 /// ...its bound in bytes of the file: a frame of our own logs packs to a third...
 const EXPANSION: u64 = 256;
 /// ...and the largest: ten million particles fit.
 const MOST_BOUND: u64 = 1 << 30;
-/// Largest window of a packed stream, as a power of two [bytes].
+/// Largest window of a packed stream, as a power of two \[bytes].
 const WINDOW: u32 = 25;
 
-/// The most that a chunk of a file of this size may unpack to [bytes].
+/// The most that a chunk of a file of this size may unpack to \[bytes].
 pub(super) fn unpacked_bound(file: u64) -> u64 {
     file.saturating_mul(EXPANSION).clamp(LEAST_BOUND, MOST_BOUND)
 }

@@ -4,7 +4,7 @@ use crate::record::Topic;
 
 /// Most fields of a message, those of lists counted one by one: a body and its shape for each of 200,000 bodies fit.
 const MOST_FIELDS: usize = 500_000;
-/// Largest message of diagnostics or of an event [bytes].
+/// Largest message of diagnostics or of an event \[bytes].
 const LARGEST: usize = 8 << 20;
 
 /// Whether a message may be decoded. Errors say why not.

@@ -16,7 +16,7 @@ const PREFIX: usize = 9;
 pub(crate) struct Records {
     source: BufReader<File>,
     path: PathBuf,
-    /// Size of the file, and how much of it is not read yet [bytes].
+    /// Size of the file, and how much of it is not read yet \[bytes].
     size: u64,
     left: u64,
     /// Checksum of what was read, for the end of the data.

@@ -13,9 +13,9 @@ use crate::record::Topic;
 pub struct Totals {
     /// Frames in the log.
     pub frames: u64,
-    /// Simulated time of the first message [s].
+    /// Simulated time of the first message \[s].
     pub start: f64,
-    /// Simulated time of the last message [s].
+    /// Simulated time of the last message \[s].
     pub end: f64,
 }
 

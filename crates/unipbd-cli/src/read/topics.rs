@@ -10,7 +10,7 @@ use super::records::Records;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Traffic {
     pub(crate) messages: u64,
-    /// Before compression [bytes].
+    /// Before compression \[bytes].
     pub(crate) bytes: u64,
 }
 

@@ -29,7 +29,7 @@ pub(crate) struct EncodedFrame {
 #[derive(Debug)]
 pub(crate) struct EncodedMessage {
     pub(crate) topic: Topic,
-    /// Simulated time [ns].
+    /// Simulated time \[ns].
     pub(crate) time: u64,
     pub(crate) range: Range<usize>,
 }
@@ -57,7 +57,7 @@ pub(crate) struct FrameState<'a> {
 pub(crate) struct Encoder {
     setting: Setting,
     fields: Fields,
-    /// Time of the last message [ns].
+    /// Time of the last message \[ns].
     time: u64,
     /// Topics of which the reader has yet to be told what stays the same.
     unsaid: Topics,

@@ -42,7 +42,7 @@ pub struct Header {
 }
 
 impl Header {
-    /// Length of a frame [s].
+    /// Length of a frame \[s].
     pub fn dt(&self) -> f64 {
         1.0 / self.fps
     }

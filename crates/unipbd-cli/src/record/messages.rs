@@ -25,7 +25,7 @@ pub(crate) fn schema<M: foxglove::Encode>() -> (String, Vec<u8>) {
     M::get_schema().map(|schema| (schema.name, schema.data.into_owned())).unwrap_or_default()
 }
 
-/// A simulated time [ns] as a message holds it.
+/// A simulated time \[ns] as a message holds it.
 pub(crate) fn timestamp(nanoseconds: u64) -> Timestamp {
     let seconds = u32::try_from(nanoseconds / NANOSECONDS_PER_SECOND).unwrap_or(u32::MAX);
     Timestamp::new(seconds, (nanoseconds % NANOSECONDS_PER_SECOND) as u32)
@@ -52,7 +52,7 @@ pub(crate) fn identity() -> Pose {
     Pose { position: Some(Vector3 { x: 0.0, y: 0.0, z: 0.0 }), orientation: Some(rotation(0.0)) }
 }
 
-/// Turn about z, counter-clockwise [rad].
+/// Turn about z, counter-clockwise \[rad].
 fn rotation(angle: f64) -> Quaternion {
     let (sine, cosine) = (0.5 * angle).sin_cos();
     Quaternion { x: 0.0, y: 0.0, z: sine, w: cosine }

@@ -78,7 +78,7 @@ pub struct Recorder {
 pub struct Summary {
     /// Frames in it.
     pub frames: u64,
-    /// Its size [bytes].
+    /// Its size \[bytes].
     pub bytes: u64,
 }
 

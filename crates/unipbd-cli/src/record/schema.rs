@@ -97,13 +97,13 @@ messages! {
         /// Name given in the scene.
         #[prost(tag = "2", string)]
         name: String,
-        /// Centre of mass [m].
+        /// Centre of mass \[m].
         #[prost(tag = "3", double)]
         x: f64,
-        /// Centre of mass [m].
+        /// Centre of mass \[m].
         #[prost(tag = "4", double)]
         y: f64,
-        /// Rotation, counter-clockwise [rad].
+        /// Rotation, counter-clockwise \[rad].
         #[prost(tag = "5", double)]
         angle: f64,
         /// Velocity along x [m/s].
@@ -115,19 +115,19 @@ messages! {
         /// Angular velocity [rad/s].
         #[prost(tag = "8", double)]
         angular_velocity: f64,
-        /// Mean force of the fluid over the frame, along x [N].
+        /// Mean force of the fluid over the frame, along x \[N].
         #[prost(tag = "9", double)]
         fluid_force_x: f64,
-        /// Mean force of the fluid over the frame, along y [N].
+        /// Mean force of the fluid over the frame, along y \[N].
         #[prost(tag = "10", double)]
         fluid_force_y: f64,
         /// Mean torque of the fluid about the centre of mass over the frame [N m].
         #[prost(tag = "11", double)]
         fluid_torque: f64,
-        /// Mean force of contacts and joints over the frame, along x [N].
+        /// Mean force of contacts and joints over the frame, along x \[N].
         #[prost(tag = "12", double)]
         contact_force_x: f64,
-        /// Mean force of contacts and joints over the frame, along y [N].
+        /// Mean force of contacts and joints over the frame, along y \[N].
         #[prost(tag = "13", double)]
         contact_force_y: f64,
         /// Mean torque of contacts and joints about the centre of mass over the frame [N m].
@@ -146,25 +146,25 @@ messages! {
         /// `dynamic`, `kinematic` or `static`.
         #[prost(tag = "2", string)]
         kind: String,
-        /// Mass [kg].
+        /// Mass \[kg].
         #[prost(tag = "3", double)]
         mass: f64,
         /// Moment of inertia about the centre of mass [kg m^2].
         #[prost(tag = "4", double)]
         inertia: f64,
-        /// Radius of a disc, 0 for a polygon [m].
+        /// Radius of a disc, 0 for a polygon \[m].
         #[prost(tag = "5", double)]
         radius: f64,
-        /// Corners of a polygon, counter-clockwise, x [m].
+        /// Corners of a polygon, counter-clockwise, x \[m].
         #[prost(tag = "6", double, repeated)]
         outline_x: Vec<f64>,
-        /// Corners of a polygon, counter-clockwise, y [m].
+        /// Corners of a polygon, counter-clockwise, y \[m].
         #[prost(tag = "7", double, repeated)]
         outline_y: Vec<f64>,
-        /// Lattice samples, x [m].
+        /// Lattice samples, x \[m].
         #[prost(tag = "8", double, repeated)]
         sample_x: Vec<f64>,
-        /// Lattice samples, y [m].
+        /// Lattice samples, y \[m].
         #[prost(tag = "9", double, repeated)]
         sample_y: Vec<f64>,
         /// Area each sample stands for [m^2].

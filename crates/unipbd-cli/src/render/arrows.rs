@@ -26,7 +26,7 @@ const LONGEST_FORCE: f32 = 0.16;
 /// What arrows of one picture show.
 pub(super) struct Arrows<'a> {
     pub vectors: Vectors,
-    /// The number that the longest arrow stands for [m/s], [N]; left out, that of the frame.
+    /// The number that the longest arrow stands for [m/s], \[N]; left out, that of the frame.
     pub longest: Option<f64>,
     pub frame: &'a Snapshot,
     pub camera: &'a Camera,

@@ -34,7 +34,7 @@ fn encoded(channel: f32) -> f32 {
     if channel <= 0.003_130_8 { 12.92 * channel } else { 1.055 * channel.powf(1.0 / 2.4) - 0.055 }
 }
 
-/// A colour from lightness (0 to 1), chroma and hue [deg] in Oklab (B. Ottosson, 2020), where equal
+/// A colour from lightness (0 to 1), chroma and hue \[deg] in Oklab (B. Ottosson, 2020), where equal
 /// steps look equally large. Chroma that sRGB cannot show is reduced until it can.
 fn from_oklch(lightness: f32, chroma: f32, hue_deg: f32) -> Rgb {
     let shown = |chroma: f32| {

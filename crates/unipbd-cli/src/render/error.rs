@@ -42,7 +42,7 @@ pub enum RenderError {
     Ffmpeg(String),
     /// The GIF would need too much memory.
     GifMemory {
-        /// Most that it may take [byte].
+        /// Most that it may take \[byte].
         limit: usize,
     },
     /// The GIF does not fit into the size asked for.

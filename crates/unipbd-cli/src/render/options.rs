@@ -62,7 +62,7 @@ pub struct Annotations {
 pub enum Vectors {
     /// Mean velocities of particles [m/s], and those of bodies.
     Velocity,
-    /// Forces of fluids and of contacts on bodies [N].
+    /// Forces of fluids and of contacts on bodies \[N].
     Force,
 }
 
@@ -87,7 +87,7 @@ pub struct RenderOptions {
     pub annotations: Annotations,
     /// What arrows show, if there are any.
     pub vectors: Option<Vectors>,
-    /// The number that the longest arrow stands for [m/s], [N]; left out, that of the frame drawn.
+    /// The number that the longest arrow stands for [m/s], \[N]; left out, that of the frame drawn.
     pub longest_vector: Option<f64>,
 }
 

@@ -7,11 +7,11 @@ const SLACK: f64 = 0.01;
 /// Which frames to draw.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Selection {
-    /// One picture: the frame nearest to this time [s]; left out, the last frame.
+    /// One picture: the frame nearest to this time \[s]; left out, the last frame.
     pub time: Option<f64>,
-    /// No frame before this time [s].
+    /// No frame before this time \[s].
     pub from: Option<f64>,
-    /// No frame after this time [s].
+    /// No frame after this time \[s].
     pub to: Option<f64>,
     /// One frame of so many; left out, all, or as many as a film needs.
     pub every: Option<u64>,

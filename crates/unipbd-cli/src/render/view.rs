@@ -4,7 +4,7 @@ use unipbd_core::observe::WallOutline;
 use super::error::RenderError;
 use crate::snapshot::{Setting, Snapshot};
 
-/// The region a picture shows [m].
+/// The region a picture shows \[m].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct View {
     /// Lower left corner.
@@ -151,17 +151,17 @@ impl Camera {
         self.pixel(Vector64::new(f64::from(x), f64::from(y)))
     }
 
-    /// Length of a distance [m] in pixels.
+    /// Length of a distance \[m] in pixels.
     pub fn length(&self, distance: f64) -> f32 {
         (distance * self.scale) as f32
     }
 
-    /// Centre of the region [m].
+    /// Centre of the region \[m].
     pub fn center(&self) -> Vector64 {
         (Vector64::from(self.view.min) + Vector64::from(self.view.max)) / 2.0
     }
 
-    /// Diagonal of the region [m].
+    /// Diagonal of the region \[m].
     pub fn diagonal(&self) -> f64 {
         (Vector64::from(self.view.max) - Vector64::from(self.view.min)).length()
     }

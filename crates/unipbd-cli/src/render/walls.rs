@@ -53,7 +53,7 @@ impl Wall {
     }
 
     /// The mirror images of a point in those straight pieces that have it before them, no farther
-    /// away than `reach` [m], each with the direction out of its wall.
+    /// away than `reach` \[m], each with the direction out of its wall.
     pub fn mirror(&self, point: Vector64, reach: f64, mut image: impl FnMut(Vector64, Vector64)) {
         for piece in &self.pieces {
             let offset = point - piece.from;
@@ -108,7 +108,7 @@ fn center(points: &mut Vec<Vector64>, camera: &Camera) {
     *points = vec![foot - along * 2.0 * camera.diagonal(), foot + along * 2.0 * camera.diagonal()];
 }
 
-/// The strip of the given depth [m] to the right of a line, with mitred corners.
+/// The strip of the given depth \[m] to the right of a line, with mitred corners.
 fn band(points: &[Vector64], closed: bool, depth: f64, camera: &Camera) -> Option<Path> {
     let count = points.len();
     let right = |from: usize, to: usize| -(points[to] - points[from]).normalize().perp();

@@ -69,7 +69,7 @@ pub struct Statistics {
     pub peak_particles: u64,
     /// Largest density error of all frames, as a fraction.
     pub density_error_max: f64,
-    /// Simulated time of the largest density error [s].
+    /// Simulated time of the largest density error \[s].
     pub density_error_max_time: f64,
     /// Largest speed of all frames [m/s].
     pub speed_max: f64,

@@ -13,7 +13,7 @@ const DEEP: f64 = 4.0;
 /// The displacement is undone step by step; each step is a contraction by the slope of the wave.
 const STEPS: usize = 12;
 
-/// The waves of a scene with their phases [rad].
+/// The waves of a scene with their phases \[rad].
 pub(super) struct Waves<'a>(Vec<(&'a Wave, f64)>);
 
 impl<'a> Waves<'a> {
@@ -40,7 +40,7 @@ impl<'a> Waves<'a> {
         block_points(&taller, spacing).into_iter().filter(inside).collect()
     }
 
-    /// The height from which the waves lift the fluid that is at a point now [m].
+    /// The height from which the waves lift the fluid that is at a point now \[m].
     fn rest_height(&self, x: Vector64) -> f64 {
         let lifted = |y: f64| self.0.iter().map(|(wave, phase)| lift(wave, *phase, x.x, y)).sum::<f64>();
         (0..STEPS).fold(x.y, |y, _| x.y - lifted(y))
@@ -48,7 +48,7 @@ impl<'a> Waves<'a> {
 }
 
 /// Vertical displacement in the linear mode of an inviscid layer above or below the level (Lamb,
-/// Hydrodynamics, section 228): a cos(kx) sinh(k d)/sinh(k depth), d the distance to floor or lid [m].
+/// Hydrodynamics, section 228): a cos(kx) sinh(k d)/sinh(k depth), d the distance to floor or lid \[m].
 fn lift(wave: &Wave, phase: f64, x: f64, y: f64) -> f64 {
     let k = TAU / wave.wavelength;
     let end = if y > wave.level { wave.top } else { wave.bottom };

@@ -25,7 +25,7 @@ pub struct OutlineLoad {
 }
 
 impl OutlineLoad {
-    /// Adds a force times dt^2 [kg m] with this arm [m].
+    /// Adds a force times dt^2 [kg m] with this arm \[m].
     pub fn add(&mut self, force: Vector64, arm: Vector64) {
         self.force += force;
         self.torque += arm.perp_dot(force);
@@ -44,28 +44,28 @@ pub struct Corrections {
 }
 
 impl Corrections {
-    /// Displacements by row [m].
+    /// Displacements by row \[m].
     pub fn displacements(&self) -> &[Vector] {
         &self.displacement
     }
 
-    /// Displacements by row, to be written [m].
+    /// Displacements by row, to be written \[m].
     pub fn displacements_mut(&mut self) -> &mut [Vector] {
         &mut self.displacement
     }
 
-    /// Moves by row that velocities do not follow [m]; empty where no group asks for them.
+    /// Moves by row that velocities do not follow \[m]; empty where no group asks for them.
     pub fn shifts(&self) -> &[Vector] {
         &self.shift
     }
 
-    /// Moves by row that velocities do not follow, to be written [m].
+    /// Moves by row that velocities do not follow, to be written \[m].
     pub fn shifts_mut(&mut self) -> &mut [Vector] {
         self.shift.resize(self.displacement.len(), Vector::ZERO);
         &mut self.shift
     }
 
-    /// Displacements, and moves that velocities do not follow, to be written [m].
+    /// Displacements, and moves that velocities do not follow, to be written \[m].
     pub(crate) fn both_mut(&mut self) -> (&mut [Vector], &mut [Vector]) {
         self.shift.resize(self.displacement.len(), Vector::ZERO);
         (&mut self.displacement, &mut self.shift)

@@ -6,7 +6,7 @@ use crate::math::{Real, Vector};
 pub struct Distance {
     /// Ids of the particles.
     pub particles: [u32; 2],
-    /// Distance d [m].
+    /// Distance d \[m].
     pub length: Real,
     /// Inverse stiffness, 0 is rigid [m/N].
     pub compliance: Real,
@@ -17,7 +17,7 @@ pub struct Distance {
 pub struct Tether {
     /// Ids of the particles.
     pub particles: [u32; 2],
-    /// Largest distance d [m].
+    /// Largest distance d \[m].
     pub length: Real,
     /// Inverse stiffness, 0 is rigid [m/N].
     pub compliance: Real,

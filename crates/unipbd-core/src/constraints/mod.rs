@@ -63,9 +63,9 @@ impl BitOr for Needs {
 /// One substep as groups and effects see it.
 #[derive(Clone, Copy)]
 pub struct Substep<'a> {
-    /// Length of the substep [s].
+    /// Length of the substep \[s].
     pub dt: Real,
-    /// Simulated time at the start of the substep [s].
+    /// Simulated time at the start of the substep \[s].
     pub time: f64,
     /// Largest pressure over density that a fluid may push with [m^2/s^2].
     pub pressure_limit: Real,
@@ -118,7 +118,7 @@ pub trait ConstraintGroup: Send + Sync {
         let _ = (now, velocities);
     }
 
-    /// Memory held by columns of its own [bytes].
+    /// Memory held by columns of its own \[bytes].
     fn memory_bytes(&self) -> usize {
         0
     }

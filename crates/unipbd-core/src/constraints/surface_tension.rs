@@ -50,24 +50,24 @@ pub struct SurfaceTension {
 /// Derivatives of the energy of a particle over its volume.
 #[derive(Clone, Copy, Default)]
 struct Pull {
-    /// By n [N].
+    /// By n \[N].
     along: Vector,
     /// By the covered part s [N/m].
     inward: Real,
-    /// By the gradient of the part that bodies cover, beside what they have as liquid [N].
+    /// By the gradient of the part that bodies cover, beside what they have as liquid \[N].
     wetting: Vector,
 }
 
 /// A liquid with a tension.
 #[derive(Clone, Copy)]
 struct Tension {
-    /// c times the spacing [N].
+    /// c times the spacing \[N].
     line: Real,
     /// k [N/m].
     hold: Real,
     /// As how much liquid walls and bodies count.
     solid: Real,
-    /// Energy of a wetted wall per length, doubled: half of it lies within the wall [N].
+    /// Energy of a wetted wall per length, doubled: half of it lies within the wall \[N].
     wetting: Real,
 }
 

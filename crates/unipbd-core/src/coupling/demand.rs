@@ -6,7 +6,7 @@ use crate::rigid::contact::UnionFind;
 
 /// Way of a body in a substep, relative to its size: beyond it contacts are found at one end of a body only.
 const WAY: f64 = 0.5;
-/// Rotation of a polygon in a substep [rad].
+/// Rotation of a polygon in a substep \[rad].
 const TURN: f64 = 0.25;
 /// Substeps squared per mass ratio, and per way that gravity moves a body in a frame relative to its size. A body of
 /// 100 kg dropped on one of 1 kg and 0.5 m overlaps it by 26 % of that size at 1 substep, 7 % at 2, 0.4 % at 8:
@@ -27,7 +27,7 @@ pub struct BodyDemand {
 }
 
 impl RigidBodies {
-    /// Substeps that a frame of this length [s] needs.
+    /// Substeps that a frame of this length \[s] needs.
     pub(crate) fn demand(&self, frame: f64, gravity: Vector64) -> BodyDemand {
         let stacked = self.support_chain(gravity) / BODIES_PER_SUBSTEP;
         BodyDemand {
@@ -36,7 +36,7 @@ impl RigidBodies {
         }
     }
 
-    /// Largest pressure by which a body may press on a fluid: that of its fall and of its weight [Pa].
+    /// Largest pressure by which a body may press on a fluid: that of its fall and of its weight \[Pa].
     pub(crate) fn pressure(&self, gravity: f64) -> f64 {
         let bodies = &self.bodies;
         let dynamic = (0..bodies.len()).filter(|&id| bodies.is_dynamic(id) && !bodies.asleep[id]);

@@ -103,7 +103,7 @@ impl RigidBodies {
         old
     }
 
-    /// Pushes a body by an impulse [N s] at a point [m].
+    /// Pushes a body by an impulse [N s] at a point \[m].
     pub(crate) fn strike_body(&mut self, body: u32, impulse: Vector64, point: Vector64) {
         self.bodies.strike(body, impulse, point);
     }

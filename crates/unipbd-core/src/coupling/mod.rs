@@ -21,7 +21,7 @@ use push_out::Penetration;
 pub use ropes::RopeReading;
 pub(crate) use ropes::{MOST_PIECES, Ropes};
 
-/// A little more than half the diagonal of a lattice cell [spacings].
+/// A little more than half the diagonal of a lattice cell \[spacings].
 const LEAST_NEAR: f64 = 0.75;
 
 /// The bodies of a run, their contacts, and the ids of their samples.
@@ -45,12 +45,12 @@ pub struct RigidBodies {
     /// Bodies with samples, in the order of the ids of these.
     #[serde(skip)]
     sampled: Vec<u32>,
-    /// Distance of samples [m].
+    /// Distance of samples \[m].
     #[serde(skip)]
     spacing: f64,
-    /// Distance from a sample within which a particle may be inside the body, by body [m].
+    /// Distance from a sample within which a particle may be inside the body, by body \[m].
     near: Vec<Real>,
-    /// Path in a substep, of a particle or a body, from which on the way counts and not the place alone [m].
+    /// Path in a substep, of a particle or a body, from which on the way counts and not the place alone \[m].
     far: Real,
     penetrations: Vec<Penetration>,
     /// Ends of ropes that move with bodies.
@@ -69,11 +69,11 @@ pub struct RigidBodies {
 struct Tied {
     id: u32,
     body: u32,
-    /// Where it is on the body [m].
+    /// Where it is on the body \[m].
     place: Vector64,
 }
 
-/// Distance from a sample within which a particle may be inside the body [m].
+/// Distance from a sample within which a particle may be inside the body \[m].
 fn near(body: &Body, seen: bool, spacing: f64) -> Real {
     let gap = if seen { push_out::widest_gap(body, spacing) } else { 0.0 };
     gap.max(LEAST_NEAR * spacing) as Real

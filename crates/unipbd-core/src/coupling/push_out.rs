@@ -230,7 +230,7 @@ fn is_movable(particles: &Particles, row: usize) -> bool {
     particles.phase[row] != Phase::Rigid && particles.inverse_mass[row] > 0.0 && row < particles.awake()
 }
 
-/// How far from its nearest sample a point of a body can be, where that is on its outline [m]. Thin parts
+/// How far from its nearest sample a point of a body can be, where that is on its outline \[m]. Thin parts
 /// that do not fit the lattice have few samples.
 pub(super) fn widest_gap(body: &Body, spacing: f64) -> f64 {
     let cell = |x: Vector64| ((x.x / spacing).floor() as i64, (x.y / spacing).floor() as i64);

@@ -24,7 +24,7 @@ struct Line {
     /// Id of its first point; those of the others follow.
     first: u32,
     pieces: u32,
-    /// Length of a piece [m].
+    /// Length of a piece \[m].
     length: f64,
     /// Inverse stiffness of a piece [m/N].
     compliance: f64,

@@ -8,16 +8,16 @@ use crate::particles::Particles;
 use crate::rigid::{BodyKind, Pose, Twist};
 use crate::rows::RowIndex;
 
-/// Distance of the corners between which the outline of a soft body may bend [spacings].
+/// Distance of the corners between which the outline of a soft body may bend \[spacings].
 const PIECE: f64 = 2.0;
 
 /// A body whose shape is matched.
 #[derive(Clone, serde::Serialize, serde::Deserialize)]
 pub(super) struct Matched {
     body: u32,
-    /// Outline at rest, finely divided [m].
+    /// Outline at rest, finely divided \[m].
     outline: Vec<Vector64>,
-    /// How far from a corner samples count for it [m].
+    /// How far from a corner samples count for it \[m].
     reach: f64,
 }
 

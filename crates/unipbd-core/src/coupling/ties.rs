@@ -10,7 +10,7 @@ use crate::rows::RowIndex;
 use crate::scene::Rope;
 
 impl RigidBodies {
-    /// From now on a particle moves with the body of this name, from a place in the world [m].
+    /// From now on a particle moves with the body of this name, from a place in the world \[m].
     pub(super) fn tie(&mut self, id: u32, body: &str, at: Vector64) {
         let Some(body) = self.bodies.find(body) else { return };
         let pose = self.bodies.pose(body);

@@ -62,7 +62,7 @@ enum Values {
 pub struct Points {
     /// Name of their material.
     pub material: String,
-    /// Where they are [m].
+    /// Where they are \[m].
     pub positions: Vec<Vector64>,
     /// Velocity of all of them where `velocities` is empty [m/s].
     pub velocity: Vector64,
@@ -94,7 +94,7 @@ impl Edit {
         Edit::default()
     }
 
-    /// Moves particles to these places [m]. They keep their velocity.
+    /// Moves particles to these places \[m]. They keep their velocity.
     #[must_use]
     pub fn set_positions(self, ids: impl Into<Vec<u32>>, positions: impl Into<Vec<Vector64>>) -> Self {
         self.change(ids, Values::Positions(positions.into()))

@@ -46,7 +46,7 @@ impl Edit {
         self.with(WorldChange::RemoveBody(body))
     }
 
-    /// Puts the centre of mass of a body somewhere else [m], at this angle [rad]. It keeps its velocity; a scripted body
+    /// Puts the centre of mass of a body somewhere else \[m], at this angle \[rad]. It keeps its velocity; a scripted body
     /// goes on from there.
     #[must_use]
     pub fn move_body(self, body: u32, position: Vector64, angle: f64) -> Self {
@@ -59,7 +59,7 @@ impl Edit {
         self.with(WorldChange::ChangeBody { body, change: Box::new(change) })
     }
 
-    /// Pushes a dynamic body by an impulse [N s] at a point of the world [m].
+    /// Pushes a dynamic body by an impulse [N s] at a point of the world \[m].
     #[must_use]
     pub fn push_body(self, body: u32, impulse: Vector64, point: Vector64) -> Self {
         self.with(WorldChange::Strike { body, impulse, point })
@@ -78,13 +78,13 @@ impl Edit {
         self.with(WorldChange::RemoveJoint(joint))
     }
 
-    /// Changes the motor of a hinge ([rad/s], [N m]) or slider ([m/s], [N]), or takes it away.
+    /// Changes the motor of a hinge ([rad/s], [N m]) or slider ([m/s], \[N]), or takes it away.
     #[must_use]
     pub fn set_motor(self, joint: u32, motor: Option<Motor>) -> Self {
         self.with(WorldChange::Motor { joint, motor })
     }
 
-    /// Adds an emitter, as an `[[emitter]]` of a scene describes it; `start` and `stop` are times of the run [s]. It gets
+    /// Adds an emitter, as an `[[emitter]]` of a scene describes it; `start` and `stop` are times of the run \[s]. It gets
     /// the next number of [`Solver::emitters`](crate::Solver::emitters). Leave room for three rows behind its face.
     #[must_use]
     pub fn add_emitter(self, emitter: Emitter) -> Self {
@@ -123,7 +123,7 @@ impl Edit {
     }
 
     /// Fills a rectangle with particles of a material, as a `[[block]]` of a scene does, from its lower left to its upper
-    /// right corner [m]; `spacing` is that of the run.
+    /// right corner \[m]; `spacing` is that of the run.
     #[must_use]
     pub fn add_block(self, material: &str, min: Vector64, max: Vector64, spacing: f64) -> Self {
         let count = |from: f64, to: f64| ((to - from) / spacing).round().clamp(0.0, 1e5) as u32;

@@ -42,7 +42,7 @@ pub trait Effect: Send + Sync {
         let _ = gravity;
     }
 
-    /// Memory held by columns of its own [bytes].
+    /// Memory held by columns of its own \[bytes].
     fn memory_bytes(&self) -> usize {
         0
     }

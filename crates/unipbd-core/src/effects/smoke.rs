@@ -22,7 +22,7 @@ pub struct SmokeAdvection {
 /// A marker at the end of a substep.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Advected {
-    /// Position [m].
+    /// Position \[m].
     pub position: Vector,
     /// Velocity of the carrier there [m/s].
     pub velocity: Vector,
@@ -35,12 +35,12 @@ impl SmokeAdvection {
         SmokeAdvection { kernel, last_dt: 0.0, advected: Vec::new() }
     }
 
-    /// Length of the last substep [s], 0 before the first: part of a saved state.
+    /// Length of the last substep \[s], 0 before the first: part of a saved state.
     pub fn last_dt(&self) -> Real {
         self.last_dt
     }
 
-    /// Sets the length of the last substep [s].
+    /// Sets the length of the last substep \[s].
     pub fn set_last_dt(&mut self, last_dt: Real) {
         self.last_dt = last_dt;
     }

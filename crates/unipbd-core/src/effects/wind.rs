@@ -33,7 +33,7 @@ impl Wind {
         }
     }
 
-    /// The wind at this time [s].
+    /// The wind at this time \[s].
     pub fn at(&self, time: f64) -> Moment<'_> {
         let slices = time * self.inverse_time;
         Moment { wind: self, slice: slices.floor() as i64 as u64, part: smooth(real(slices - slices.floor())) }

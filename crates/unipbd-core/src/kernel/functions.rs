@@ -32,7 +32,7 @@ pub struct WendlandC2 {
 }
 
 impl WendlandC2 {
-    /// The kernel of radius `radius` [m].
+    /// The kernel of radius `radius` \[m].
     pub fn new(radius: f64) -> WendlandC2 {
         let square = radius * radius;
         WendlandC2 {

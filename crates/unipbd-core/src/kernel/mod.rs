@@ -15,19 +15,19 @@ pub struct Kernel<K = WendlandC2> {
 }
 
 impl Kernel {
-    /// Wendland C2 that vanishes at distance `radius` [m].
+    /// Wendland C2 that vanishes at distance `radius` \[m].
     pub fn new(radius: f64) -> Self {
         Kernel::with_shape(radius, WendlandC2::new(radius))
     }
 }
 
 impl<K: Shape> Kernel<K> {
-    /// The kernel of this formula, which vanishes at distance `radius` [m].
+    /// The kernel of this formula, which vanishes at distance `radius` \[m].
     pub fn with_shape(radius: f64, shape: K) -> Self {
         Kernel { radius: real(radius), shape }
     }
 
-    /// Radius h [m].
+    /// Radius h \[m].
     pub fn radius(&self) -> Real {
         self.radius
     }

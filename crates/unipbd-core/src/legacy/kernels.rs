@@ -31,7 +31,7 @@ enum Form {
 const LEAST_Q: Real = 1e-12;
 
 impl Formula {
-    /// The kernel of this kind and radius [m].
+    /// The kernel of this kind and radius \[m].
     pub fn new(kind: LegacyKernel, radius: f64) -> Formula {
         let (square, cube) = (radius * radius, radius * radius * radius);
         let (form, value_scale, slope_scale) = match kind {
@@ -109,7 +109,7 @@ pub(super) struct Tensile<K> {
 }
 
 impl<K: Shape> Tensile<K> {
-    /// With W0 the value of the kernel at this distance [m].
+    /// With W0 the value of the kernel at this distance \[m].
     pub fn new(kernel: K, reference: f64) -> Self {
         let value = kernel.at(real(reference * reference)).0;
         Tensile { kernel, inverse_reference: 1.0 / value }

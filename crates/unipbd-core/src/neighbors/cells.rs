@@ -94,7 +94,7 @@ pub(super) struct Cell {
 }
 
 impl Cells {
-    /// Cells for searches within `radius` [m].
+    /// Cells for searches within `radius` \[m].
     pub fn new(radius: Real, periodic: Periodic) -> Cells {
         // A little more than the radius, so that rounding does not add a fourth row to a search.
         let side = (radius * 1.001).clamp(1e-30, 1e30);

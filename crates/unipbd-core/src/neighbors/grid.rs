@@ -67,7 +67,7 @@ impl Grid {
         self.rows
     }
 
-    /// Sorts rows by cell, for searches within `radius` [m], and returns the old row of each new row.
+    /// Sorts rows by cell, for searches within `radius` \[m], and returns the old row of each new row.
     ///
     /// Rows `..dense` are sorted among themselves and indexed; the passive rows `dense..` are sorted
     /// among themselves, for locality, and not indexed. Within a cell the old order is kept. The
@@ -220,7 +220,7 @@ impl Grid {
         matches!(self.index, Index::Dense { .. })
     }
 
-    /// Memory held [bytes].
+    /// Memory held \[bytes].
     pub fn memory_bytes(&self) -> usize {
         let table = match &self.index {
             Index::Dense { ends, .. } => held(ends),

@@ -149,7 +149,7 @@ impl NeighborList {
         self.reach
     }
 
-    /// The radius of the list [m].
+    /// The radius of the list \[m].
     pub fn radius(&self) -> Real {
         self.radius
     }
@@ -195,7 +195,7 @@ impl NeighborList {
         }
     }
 
-    /// Memory held [bytes].
+    /// Memory held \[bytes].
     pub fn memory_bytes(&self) -> usize {
         held(&self.chunks) + self.chunks.iter().map(Chunk::memory_bytes).sum::<usize>()
     }

@@ -29,7 +29,7 @@ pub enum Prepared {
 /// The saved state of the search, from which the list is made again.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct SavedList {
-    /// Positions the list was built at, in its row order [m].
+    /// Positions the list was built at, in its row order \[m].
     reference: Vec<Vector>,
     skin: Real,
     /// Motion since then, as the search last saw it.
@@ -48,7 +48,7 @@ impl SavedList {
         self.skin <= radius
     }
 
-    /// Positions that the list is made at again [m].
+    /// Positions that the list is made at again \[m].
     pub fn reference(&self) -> &[Vector] {
         &self.reference
     }
@@ -112,7 +112,7 @@ pub struct Neighbors {
 }
 
 impl Neighbors {
-    /// A search for pairs within `radius` [m].
+    /// A search for pairs within `radius` \[m].
     pub fn new(periodic: Periodic, radius: Real, least_skin: Real, cost: ListCost) -> Self {
         Neighbors {
             grid: Grid::new(periodic),
@@ -133,7 +133,7 @@ impl Neighbors {
         self.grid.periodic()
     }
 
-    /// The radius within which pairs are found [m].
+    /// The radius within which pairs are found \[m].
     pub fn radius(&self) -> Real {
         self.radius
     }
@@ -347,12 +347,12 @@ impl Neighbors {
         self.motion = saved.motion;
     }
 
-    /// The radius that the sleeping rows are sorted for [m].
+    /// The radius that the sleeping rows are sorted for \[m].
     fn still_radius(&self) -> Real {
         self.radius * (1.0 + ListCost::LONGEST)
     }
 
-    /// Memory held [bytes].
+    /// Memory held \[bytes].
     pub fn memory_bytes(&self) -> usize {
         self.grid.memory_bytes()
             + self.still.iter().map(Grid::memory_bytes).sum::<usize>()

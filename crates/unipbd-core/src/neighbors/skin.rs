@@ -16,9 +16,9 @@ use std::ops::Range;
 /// How particles have moved since a list was built.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Motion {
-    /// Common drift of all rows [m].
+    /// Common drift of all rows \[m].
     pub drift: Vector,
-    /// No displacement is farther from the drift [m]; infinite where one is not a number.
+    /// No displacement is farther from the drift \[m]; infinite where one is not a number.
     pub deviation: Real,
 }
 
@@ -35,7 +35,7 @@ impl Motion {
         Motion { drift: Vector::ZERO, deviation: self.deviation + self.drift.length() }
     }
 
-    /// The skin a list needs to survive this motion [m].
+    /// The skin a list needs to survive this motion \[m].
     pub fn needed_skin(&self) -> Real {
         // Displacements, and distances within the list, are rounded.
         let rounding = 8.0 * Real::EPSILON * (self.drift.abs().max_element() + self.deviation);
@@ -133,7 +133,7 @@ impl SkinList {
         if skin <= Self::WIDEST_SKIN * radius { skin } else { Self::WIDEST_SKIN * radius }
     }
 
-    /// The radius to order a grid by for [`build`](Self::build) [m].
+    /// The radius to order a grid by for [`build`](Self::build) \[m].
     pub fn list_radius(radius: Real, skin: Real) -> Real {
         (radius + Self::capped(radius, skin)) * (1.0 + 8.0 * Real::EPSILON)
     }
@@ -225,7 +225,7 @@ impl SkinList {
         &self.list
     }
 
-    /// The radius within which it is complete [m].
+    /// The radius within which it is complete \[m].
     pub fn radius(&self) -> Real {
         self.radius
     }
@@ -235,7 +235,7 @@ impl SkinList {
         &self.reference
     }
 
-    /// The skin of the list [m].
+    /// The skin of the list \[m].
     pub fn skin(&self) -> Real {
         self.skin
     }
@@ -250,7 +250,7 @@ impl SkinList {
         self.skin = -1.0;
     }
 
-    /// Memory held [bytes].
+    /// Memory held \[bytes].
     pub fn memory_bytes(&self) -> usize {
         self.list.memory_bytes() + held(&self.reference)
     }

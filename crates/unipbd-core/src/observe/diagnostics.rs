@@ -147,7 +147,7 @@ entries! {
         /// Reading in the unit of its kind; not a number where there is nothing to read.
         #[quantity(2)]
         pub value: f64,
-        /// Kind: level and front [m], pressure [N/m], force [N], flow_rate [m^2/s].
+        /// Kind: level and front \[m], pressure [N/m], force \[N], flow_rate [m^2/s].
         #[quantity(3)]
         pub kind: GaugeKind,
     }
@@ -164,7 +164,7 @@ impl Diagnostics {
         self.counts.iter().sum()
     }
 
-    /// Kinetic and potential energy [J].
+    /// Kinetic and potential energy \[J].
     pub fn energy(&self) -> f64 {
         self.kinetic_energy + self.potential_energy
     }

@@ -21,7 +21,7 @@ pub enum Severity {
 /// An event of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Event {
-    /// Simulated time [s].
+    /// Simulated time \[s].
     pub time: f64,
     /// How grave it is.
     pub severity: Severity,
@@ -29,7 +29,7 @@ pub struct Event {
     pub message: String,
 }
 
-/// A wall as a line to draw: straight pieces from point to point [m]. Its solid side lies to the
+/// A wall as a line to draw: straight pieces from point to point \[m]. Its solid side lies to the
 /// right of the way: a box full of wall runs clockwise, a tank to stay in counter-clockwise.
 #[derive(Clone, Debug, PartialEq)]
 pub struct WallOutline {

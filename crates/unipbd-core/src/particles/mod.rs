@@ -17,7 +17,7 @@ pub(crate) use scratch::Scratch;
 use scratch::{Buffer, gather};
 
 /// Position of a particle that was displaced by u since the start x_n of the substep: x = x_n + (u + rem), where rem is
-/// the part of earlier displacements that rounding kept out of the position [m]. In f32 this stays accurate out to 10^5
+/// the part of earlier displacements that rounding kept out of the position \[m]. In f32 this stays accurate out to 10^5
 /// spacings from the origin, where x - x_n would lose gravity altogether.
 #[inline(always)]
 pub(crate) fn displaced(start: Vector, displacement: Vector, remainder: Vector) -> Vector {
@@ -38,7 +38,7 @@ pub struct OptionalColumns {
 /// A particle about to be added.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NewParticle {
-    /// Position [m]; the rounding error is kept.
+    /// Position \[m]; the rounding error is kept.
     pub position: Vector64,
     /// Velocity [m/s].
     pub velocity: Vector,
@@ -122,7 +122,7 @@ macro_rules! columns {
                 Ok(particles)
             }
 
-            /// Memory held by the columns [bytes].
+            /// Memory held by the columns \[bytes].
             pub(crate) fn memory_bytes(&self) -> usize {
                 0 $( + held(&self.$name) )*
             }
@@ -131,13 +131,13 @@ macro_rules! columns {
 }
 
 columns! {
-    /// Position x; during a substep the predicted and projected one [m].
+    /// Position x; during a substep the predicted and projected one \[m].
     position: Vector,
-    /// Position at the start of the substep, x_n [m].
+    /// Position at the start of the substep, x_n \[m].
     start: Vector,
-    /// Displacement since the start of the substep, u [m]; for smoke the velocity one substep ago [m/s].
+    /// Displacement since the start of the substep, u \[m]; for smoke the velocity one substep ago [m/s].
     displacement: Vector,
-    /// Part of the displacement that rounding kept out of the position [m].
+    /// Part of the displacement that rounding kept out of the position \[m].
     remainder: Vector,
     /// Velocity [m/s].
     velocity: Vector,
@@ -155,11 +155,11 @@ columns! {
     phase: Phase,
     /// Temperature (optional column).
     temperature: Real,
-    /// Time since the particle was added [s] (optional column).
+    /// Time since the particle was added \[s] (optional column).
     age: Real,
-    /// Where the particle came to rest [m] (optional column).
+    /// Where the particle came to rest \[m] (optional column).
     anchor: Vector,
-    /// How long its surroundings have been at rest [s] (optional column).
+    /// How long its surroundings have been at rest \[s] (optional column).
     rest: Real,
     /// Acceleration that a hook adds in this substep [m/s^2]; empty unless one does.
     acceleration: Vector,
@@ -233,12 +233,12 @@ impl Particles {
         self.optional
     }
 
-    /// Positions [m].
+    /// Positions \[m].
     pub fn positions(&self) -> &[Vector] {
         &self.position
     }
 
-    /// Positions at the start of the substep [m].
+    /// Positions at the start of the substep \[m].
     pub fn starts(&self) -> &[Vector] {
         &self.start
     }

@@ -64,7 +64,7 @@ impl Outline {
 }
 
 impl Outline {
-    /// Memory held [bytes].
+    /// Memory held \[bytes].
     pub fn memory_bytes(&self) -> usize {
         held(&self.corners) + held(&self.crossings)
     }

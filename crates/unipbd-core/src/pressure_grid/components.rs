@@ -119,7 +119,7 @@ impl Components {
         }
     }
 
-    /// Memory held [bytes].
+    /// Memory held \[bytes].
     pub fn memory_bytes(&self) -> usize {
         held(&self.runs) + held(&self.airy) + held(&self.closed)
     }

@@ -58,7 +58,7 @@ impl Couplings {
         });
     }
 
-    /// Memory held [bytes].
+    /// Memory held \[bytes].
     pub fn memory_bytes(&self) -> usize {
         held_by(&[&self.right, &self.upper, &self.air, &self.total])
     }

@@ -88,7 +88,7 @@ pub(super) struct Felt<'a> {
 }
 
 impl Felt<'_> {
-    /// The velocity change [m/s] and the displacement [m] at a point.
+    /// The velocity change [m/s] and the displacement \[m] at a point.
     #[inline(always)]
     pub fn at(&self, x: Vector) -> (Vector, Vector) {
         let place = self.lattice.place(x);

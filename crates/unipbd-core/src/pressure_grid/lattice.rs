@@ -22,9 +22,9 @@ const FARTHEST_CELL: Real = 1e8;
 /// Cells `0..width` x `0..height` of a grid fixed in space, in rows with at least one more cell around.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Lattice {
-    /// Width of a cell [m].
+    /// Width of a cell \[m].
     pub cell: Real,
-    /// A corner of cells, on walls where that can be [m].
+    /// A corner of cells, on walls where that can be \[m].
     origin: Vector,
     /// Cells from the origin to the first cell of the box.
     lower: Vector,
@@ -64,7 +64,7 @@ pub(super) struct Around {
 }
 
 impl Lattice {
-    /// Cells of this width [m], as many in a period as `periods` says.
+    /// Cells of this width \[m], as many in a period as `periods` says.
     pub fn new(cell: Real, (periods, periodic): ([usize; 2], Periodic)) -> Self {
         let start = |axis: Option<PeriodicAxis>| axis.map_or(0.0, |axis| axis.from);
         let farthest = |cells: usize| if cells > 0 { (cells as Real).next_down() } else { Real::INFINITY };
@@ -93,13 +93,13 @@ impl Lattice {
         (1..=self.height).map(move |row| row * stride + 1..row * stride + width + 1)
     }
 
-    /// Lower left corner of a cell, given by its number [m].
+    /// Lower left corner of a cell, given by its number \[m].
     pub fn corner(&self, cell: usize) -> Vector {
         let (i, j) = (cell % self.stride(), cell / self.stride());
         self.origin + (self.lower + Vector::new(i as Real, j as Real) - Vector::ONE) * self.cell
     }
 
-    /// Lower left corner of the box [m].
+    /// Lower left corner of the box \[m].
     pub fn lowest(&self) -> Vector64 {
         wide(self.origin) + wide(self.lower) * f64::from(self.cell)
     }
@@ -158,7 +158,7 @@ impl Lattice {
         (inside && i < self.width && j < self.height).then(|| (j + 1) * self.stride() + i + 1)
     }
 
-    /// Corners of the box [m].
+    /// Corners of the box \[m].
     pub fn bounds(&self) -> [Vector; 2] {
         let low = self.origin + self.lower * self.cell;
         [low, low + Vector::new(self.width as Real, self.height as Real) * self.cell]

@@ -31,7 +31,7 @@ impl Role {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Mixture {
     pub(super) roles: Vec<Role>,
-    /// Mass of the heaviest fluid particle [kg].
+    /// Mass of the heaviest fluid particle \[kg].
     pub(super) heaviest: Real,
     /// Whether there is but one density, each fluid has a free surface, and there are no bodies.
     pub(super) simple: bool,

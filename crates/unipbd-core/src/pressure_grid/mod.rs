@@ -53,7 +53,7 @@ const DENSITY_RELAXATION: f64 = 0.06;
 const LOOSER_MOVES: f64 = 5.0;
 /// Places per cell at which the pressure on a wall is read.
 const STEPS_PER_CELL: Real = 4.0;
-/// Limit of the displacement by the grid in one substep [spacings].
+/// Limit of the displacement by the grid in one substep \[spacings].
 const FARTHEST: Real = 0.1;
 
 /// The pressure grid of a scene.
@@ -76,7 +76,7 @@ pub(crate) struct PressureGrid {
 }
 
 impl PressureGrid {
-    /// For particles of this spacing [m], with this accuracy of the pressure, and frames of this length [s]. Along periodic
+    /// For particles of this spacing \[m], with this accuracy of the pressure, and frames of this length \[s]. Along periodic
     /// axes there are `periods` cells.
     pub(crate) fn new(
         spacing: Real,
@@ -104,13 +104,13 @@ impl PressureGrid {
         }
     }
 
-    /// Mass of a cell that the heaviest fluid fills [kg].
+    /// Mass of a cell that the heaviest fluid fills \[kg].
     fn cell_mass(&self) -> Real {
         let width = self.lattice.cell / self.spacing;
         width * width * self.mixture.heaviest
     }
 
-    /// The places of matter in bodies that are no particles, to be written before a projection [m].
+    /// The places of matter in bodies that are no particles, to be written before a projection \[m].
     pub(crate) fn filled_mut(&mut self) -> &mut Vec<Vector> {
         &mut self.filled
     }
@@ -293,7 +293,7 @@ impl PressureGrid {
         });
     }
 
-    /// Memory held [bytes].
+    /// Memory held \[bytes].
     pub(crate) fn memory_bytes(&self) -> usize {
         self.openings.memory_bytes()
             + self.transfer.memory_bytes()
@@ -343,7 +343,7 @@ fn renew<T: Default + Clone>(column: &mut Vec<T>, cells: usize) {
     column.resize(cells, T::default());
 }
 
-/// Memory held by columns [bytes].
+/// Memory held by columns \[bytes].
 fn held_by(columns: &[&Vec<Real>]) -> usize {
     columns.iter().map(|column| held(column)).sum()
 }

@@ -189,7 +189,7 @@ impl Multigrid {
         finer[level].sweep(SWEEPS, parallelism);
     }
 
-    /// Memory held [bytes].
+    /// Memory held \[bytes].
     pub fn memory_bytes(&self) -> usize {
         self.levels.iter().map(Level::memory_bytes).sum::<usize>() + held_by(&[&self.direction, &self.image])
     }

@@ -89,7 +89,7 @@ impl Openings {
         true
     }
 
-    /// Memory held [bytes].
+    /// Memory held \[bytes].
     pub fn memory_bytes(&self) -> usize {
         held_by(&[&self.left, &self.lower, &self.inverse, &self.corners])
     }

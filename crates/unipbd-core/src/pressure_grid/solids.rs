@@ -27,7 +27,7 @@ pub(super) struct Covered {
     pub part: Real,
     /// The same times the part that is open between the walls.
     pub open: Real,
-    /// Moment about the centre of mass of a unit force along the axis [m].
+    /// Moment about the centre of mass of a unit force along the axis \[m].
     arm: f64,
 }
 
@@ -64,7 +64,7 @@ pub(super) struct Solids {
     outline: Outline,
 }
 
-/// Unit of the responses: the mass of a full cell of the heaviest fluid [kg], and the substep [s].
+/// Unit of the responses: the mass of a full cell of the heaviest fluid \[kg], and the substep \[s].
 #[derive(Clone, Copy)]
 pub(super) struct Units {
     pub cell_mass: f64,
@@ -213,7 +213,7 @@ impl Solids {
         }
     }
 
-    /// Memory held [bytes].
+    /// Memory held \[bytes].
     pub fn memory_bytes(&self) -> usize {
         held(&self.solids) + held(&self.faces) + held(&self.intervals) + held(&self.parts) + self.outline.memory_bytes()
     }

@@ -162,7 +162,7 @@ impl Spans {
         self.cells = 0;
     }
 
-    /// Memory held [bytes].
+    /// Memory held \[bytes].
     pub fn memory_bytes(&self) -> usize {
         held(&self.marks) + held(&self.spans) + held(&self.ends)
     }

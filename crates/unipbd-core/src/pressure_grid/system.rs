@@ -52,9 +52,9 @@ pub(super) struct System {
     touched: Vec<u32>,
     /// Negative divergence of the velocity in each cell: the inflow [m/s].
     pub divergence: Vec<Real>,
-    /// Excess fill of each cell [m].
+    /// Excess fill of each cell \[m].
     pub excess: Vec<Real>,
-    /// Solutions of both systems: their differences are velocity changes [m/s] and displacements [m].
+    /// Solutions of both systems: their differences are velocity changes [m/s] and displacements \[m].
     pub pressure: Vec<Real>,
     pub potential: Vec<Real>,
     /// At left and lower faces: change of velocity and move, times the open part, the open part, and 1 where
@@ -269,7 +269,7 @@ impl System {
         lattice.images.couple([&mut out.right, &mut out.upper, &mut out.air], stride);
     }
 
-    /// Sets the divergence to be removed by the pressure within a substep of length `dt` [s], and the fraction of the
+    /// Sets the divergence to be removed by the pressure within a substep of length `dt` \[s], and the fraction of the
     /// excess fill to be removed by displacements.
     pub fn assemble_right_side(
         &mut self,
@@ -316,7 +316,7 @@ impl System {
         [&mut self.pressure, &mut self.potential].into_iter().for_each(|column| images.copy(column, stride));
     }
 
-    /// Memory held [bytes].
+    /// Memory held \[bytes].
     pub fn memory_bytes(&self) -> usize {
         held_by(&[&self.depth, &self.along_x, &self.along_y, &self.divergence, &self.excess])
             + held_by(&[&self.pressure, &self.potential, &self.bare])

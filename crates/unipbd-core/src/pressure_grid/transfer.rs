@@ -92,7 +92,7 @@ impl Transfer {
         }
     }
 
-    /// Adds matter that is no particle and brings no velocity: squares of this area at some places [m], [m^2].
+    /// Adds matter that is no particle and brings no velocity: squares of this area at some places \[m], [m^2].
     pub fn fill(&mut self, lattice: &Lattice, places: &[Vector], area: Real) {
         let (stride, filled) = (lattice.stride(), area / (lattice.cell * lattice.cell));
         for &x in places {
@@ -114,7 +114,7 @@ impl Transfer {
         of_mixture.for_each(|column| images.fold(column, stride));
     }
 
-    /// Memory held [bytes].
+    /// Memory held \[bytes].
     pub fn memory_bytes(&self) -> usize {
         self.tasks.iter().map(|task| task.fields.memory_bytes()).sum::<usize>() + self.fields.memory_bytes()
     }

@@ -9,7 +9,7 @@ use std::f64::consts::{PI, TAU};
 /// All bodies of a run. A body's index is its id: it stays when others are taken away.
 #[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub struct Bodies {
-    /// Distance of lattice samples [m].
+    /// Distance of lattice samples \[m].
     pub(super) spacing: f64,
     pub(crate) poses: Vec<Pose>,
     pub(crate) velocities: Vec<Twist>,
@@ -31,9 +31,9 @@ pub struct Bodies {
     /// Whether the fluid or a caller has pushed the body since the start of the frame.
     pub(crate) pushed: Vec<bool>,
     pub(crate) cores: Vec<Core>,
-    /// Largest distance of a point of the body from its centre of mass [m].
+    /// Largest distance of a point of the body from its centre of mass \[m].
     pub(crate) reaches: Vec<f64>,
-    /// Square root of the area [m].
+    /// Square root of the area \[m].
     pub(crate) sizes: Vec<f64>,
     pub(super) scripts: Vec<Script>,
     /// What moves each body; follows from the other columns.
@@ -45,7 +45,7 @@ pub struct Bodies {
 }
 
 impl Bodies {
-    /// An empty set; `spacing` is the rest distance of particles [m].
+    /// An empty set; `spacing` is the rest distance of particles \[m].
     pub fn new(spacing: f64) -> Bodies {
         Bodies { spacing, ..Bodies::default() }
     }
@@ -145,12 +145,12 @@ impl Bodies {
         self.velocities[id as usize].at(point - self.poses[id as usize].position)
     }
 
-    /// Displacement of the body in the running substep at `arm` from its centre of mass [m].
+    /// Displacement of the body in the running substep at `arm` from its centre of mass \[m].
     pub(crate) fn displacement_at(&self, id: u32, arm: Vector64) -> Vector64 {
         self.displacements[id as usize].at(arm)
     }
 
-    /// Lattice samples in body coordinates [m].
+    /// Lattice samples in body coordinates \[m].
     pub fn samples(&self, id: u32) -> &[Vector64] {
         &self.views[id as usize].samples
     }
@@ -204,7 +204,7 @@ impl Bodies {
     }
 
     /// Predicts the displacements of a substep: u = dt v + dt^2 g, or the prescribed motion.
-    /// `time` is the start of the substep [s].
+    /// `time` is the start of the substep \[s].
     pub fn predict(&mut self, dt: f64, time: f64, gravity: Vector64) {
         for id in 0..self.len() {
             self.displacements[id] = match self.movers[id] {
@@ -231,13 +231,13 @@ impl Bodies {
         Twist { linear: origin.apply(-script.origin) - now.position, angular: origin.angle - now.angle }
     }
 
-    /// Adds to the displacement of a body in the running substep [m], [rad].
+    /// Adds to the displacement of a body in the running substep \[m], \[rad].
     pub fn push(&mut self, id: u32, linear: Vector64, angular: f64) {
         self.displacements[id as usize] += Twist { linear, angular };
         self.pushed[id as usize] = true;
     }
 
-    /// Moves a body [m], [rad] without a change of its velocity.
+    /// Moves a body \[m], \[rad] without a change of its velocity.
     pub fn shift(&mut self, id: u32, linear: Vector64, angular: f64) {
         let pose = &mut self.poses[id as usize];
         pose.position += linear;
@@ -307,7 +307,7 @@ impl Bodies {
         self.refresh_view(id);
     }
 
-    /// Applies a force [N] and a torque about the centre of mass [N m] to a dynamic body over the
+    /// Applies a force \[N] and a torque about the centre of mass [N m] to a dynamic body over the
     /// next substep of length `dt`. A sleeping body is woken.
     pub fn accelerate(&mut self, id: u32, force: Vector64, torque: f64, dt: f64) {
         let response = self.awake_responses[id as usize];

@@ -18,7 +18,7 @@ pub struct BodyChange {
     /// Outline, about the centre of mass, which stays where it is. The mass follows from the density where the body has
     /// one, else it stays; the inertia follows from both.
     pub shape: Option<Shape>,
-    /// Mass, with the inertia in proportion [kg].
+    /// Mass, with the inertia in proportion \[kg].
     pub mass: Option<f64>,
     /// Coulomb friction coefficient, at rest and sliding.
     pub friction: Option<f64>,
@@ -126,7 +126,7 @@ impl Bodies {
         self.cores[id as usize].pieces.clear();
     }
 
-    /// Changes properties of a body; it goes on where it is. A sleeping body wakes at the next substep. `time` is now [s].
+    /// Changes properties of a body; it goes on where it is. A sleeping body wakes at the next substep. `time` is now \[s].
     pub(crate) fn change(&mut self, id: u32, change: &BodyChange, time: f64) {
         let k = id as usize;
         let velocity = self.velocities[k];
@@ -165,7 +165,7 @@ impl Bodies {
         self.find_mover(k);
     }
 
-    /// Puts the centre of mass of a body somewhere else, at once. A scripted body goes on from there. `time` is now [s].
+    /// Puts the centre of mass of a body somewhere else, at once. A scripted body goes on from there. `time` is now \[s].
     pub(crate) fn place(&mut self, id: u32, pose: Pose, time: f64) {
         let k = id as usize;
         self.poses[k] = pose;
@@ -196,7 +196,7 @@ impl Bodies {
         self.poses.iter().enumerate().map(between).collect()
     }
 
-    /// Lets the script of a new body begin now, where the body was put. `time` is now [s].
+    /// Lets the script of a new body begin now, where the body was put. `time` is now \[s].
     pub(crate) fn rebase(&mut self, id: u32, time: f64) {
         let (pose, k) = (self.poses[id as usize], id as usize);
         self.place(id, pose, time);
@@ -207,7 +207,7 @@ impl Bodies {
         }
     }
 
-    /// Changes the velocity of a dynamic body by an impulse [N s] at a point of the world [m].
+    /// Changes the velocity of a dynamic body by an impulse [N s] at a point of the world \[m].
     pub(crate) fn strike(&mut self, id: u32, impulse: Vector64, point: Vector64) {
         let k = id as usize;
         let (response, arm) = (self.awake_responses[k], point - self.poses[k].position);

@@ -30,9 +30,9 @@ use crate::math::{Vector64, direction};
 /// Place and orientation.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Pose {
-    /// Place [m].
+    /// Place \[m].
     pub position: Vector64,
-    /// Rotation, counter-clockwise [rad].
+    /// Rotation, counter-clockwise \[rad].
     pub angle: f64,
 }
 
@@ -98,23 +98,23 @@ pub struct Body {
     pub name: String,
     /// Type of motion.
     pub kind: BodyKind,
-    /// Centre of mass [m].
+    /// Centre of mass \[m].
     pub position: Vector64,
-    /// Rotation, counter-clockwise [rad].
+    /// Rotation, counter-clockwise \[rad].
     pub angle: f64,
     /// Velocity of the centre of mass [m/s].
     pub velocity: Vector64,
     /// Angular velocity, counter-clockwise [rad/s].
     pub angular_velocity: f64,
-    /// Mass [kg].
+    /// Mass \[kg].
     pub mass: f64,
     /// Moment of inertia about the centre of mass [kg m^2].
     pub inertia: f64,
-    /// Outline in body coordinates, counter-clockwise [m]; a disc has none.
+    /// Outline in body coordinates, counter-clockwise \[m]; a disc has none.
     pub outline: Vec<Vector64>,
-    /// Radius of a disc, 0 for a polygon [m].
+    /// Radius of a disc, 0 for a polygon \[m].
     pub radius: f64,
-    /// Lattice samples in body coordinates [m].
+    /// Lattice samples in body coordinates \[m].
     pub samples: Vec<Vector64>,
     /// Area per sample [m^2].
     pub sample_area: f64,
@@ -132,11 +132,11 @@ pub struct Body {
     pub removed: bool,
     /// Whether it is asleep: held still until it is woken.
     pub asleep: bool,
-    /// Force of the fluid over the last frame, mean [N].
+    /// Force of the fluid over the last frame, mean \[N].
     pub fluid_force: Vector64,
     /// Torque of the fluid about the centre of mass over the last frame, mean [N m].
     pub fluid_torque: f64,
-    /// Force of contacts and joints over the last frame, mean [N].
+    /// Force of contacts and joints over the last frame, mean \[N].
     pub contact_force: Vector64,
     /// Torque of contacts and joints about the centre of mass over the last frame, mean [N m].
     pub contact_torque: f64,

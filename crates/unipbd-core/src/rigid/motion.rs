@@ -19,13 +19,13 @@ pub enum Motion {
     },
     /// The body oscillates about its start pose as a sine.
     Oscillate {
-        /// Largest displacement [m].
+        /// Largest displacement \[m].
         amplitude: Vector64,
-        /// Largest rotation [rad].
+        /// Largest rotation \[rad].
         swing: f64,
         /// Frequency [1/s].
         frequency: f64,
-        /// Phase at time zero [rad].
+        /// Phase at time zero \[rad].
         phase: f64,
     },
     /// The body follows waypoints in straight lines; before the first and after the last it rests.
@@ -42,11 +42,11 @@ pub enum Motion {
 /// A waypoint of a path.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Waypoint {
-    /// Time [s].
+    /// Time \[s].
     pub time: f64,
-    /// Displacement from the start [m].
+    /// Displacement from the start \[m].
     pub offset: Vector64,
-    /// Rotation from the start [rad].
+    /// Rotation from the start \[rad].
     pub turn: f64,
 }
 
@@ -87,7 +87,7 @@ impl Motion {
         *self == Motion::Still
     }
 
-    /// Displacement and rotation from the start at a time [s].
+    /// Displacement and rotation from the start at a time \[s].
     pub fn displacement(&self, time: f64) -> Twist {
         match self {
             Motion::Still => Twist::ZERO,
@@ -101,7 +101,7 @@ impl Motion {
         }
     }
 
-    /// Velocity at a time [s].
+    /// Velocity at a time \[s].
     pub fn velocity(&self, time: f64) -> Twist {
         match self {
             Motion::Still => Twist::ZERO,
@@ -115,7 +115,7 @@ impl Motion {
         }
     }
 
-    /// The pose at a time [s] of a body that starts at `start`.
+    /// The pose at a time \[s] of a body that starts at `start`.
     pub fn pose(&self, start: Pose, time: f64) -> Pose {
         let moved = self.displacement(time);
         Pose { position: start.position + moved.linear, angle: start.angle + moved.angular }

@@ -15,11 +15,11 @@ pub(crate) struct Entry {
 
 /// An outline in the world.
 pub(crate) enum Outline {
-    /// A disc: centre and radius [m].
+    /// A disc: centre and radius \[m].
     Disc(Vector64, f64),
-    /// A polygon, counter-clockwise [m].
+    /// A polygon, counter-clockwise \[m].
     Polygon(Vec<Vector64>),
-    /// Everything behind a line: a point on it [m] and its outward normal.
+    /// Everything behind a line: a point on it \[m] and its outward normal.
     HalfPlane(Vector64, Vector64),
 }
 
@@ -133,7 +133,7 @@ fn segments_cross(p: Vector64, q: Vector64, r: Vector64, s: Vector64) -> bool {
     near && side(p, q, r) * side(p, q, s) <= 0.0 && side(r, s, p) * side(r, s, q) <= 0.0
 }
 
-/// A box [m].
+/// A box \[m].
 pub(crate) fn rectangle(low: Vector64, high: Vector64) -> Outline {
     Outline::Polygon(vec![low, Vector64::new(high.x, low.y), high, Vector64::new(low.x, high.y)])
 }

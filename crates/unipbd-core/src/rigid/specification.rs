@@ -100,7 +100,7 @@ impl CollisionFilter {
 pub enum MassSpec {
     /// Mass per area [kg/m^2].
     Density(f64),
-    /// Mass [kg].
+    /// Mass \[kg].
     Mass(f64),
 }
 
@@ -123,7 +123,7 @@ pub struct Damping {
 }
 
 impl Damping {
-    /// The displacement of a substep of length `dt` [s] from a velocity and an acceleration by gravity: the exact decay
+    /// The displacement of a substep of length `dt` \[s] from a velocity and an acceleration by gravity: the exact decay
     /// of v' = g - c v, so that the terminal speed is g/c at every number of substeps.
     pub(crate) fn moved(&self, velocity: &Twist, pull: Vector64, dt: f64) -> Twist {
         let mut moved = velocity.scaled(dt);

@@ -9,19 +9,19 @@ use crate::shapes::{Nearest, Shape, nearest_on_polygon};
 pub enum Boundary {
     /// A half-plane: the side of a straight line behind its normal is solid.
     HalfPlane {
-        /// A point on the line [m].
+        /// A point on the line \[m].
         point: Vector64,
         /// Unit normal, out of the solid.
         normal: Vector64,
     },
     /// A solid disc.
     Disc {
-        /// Centre [m].
+        /// Centre \[m].
         center: Vector64,
-        /// Radius [m].
+        /// Radius \[m].
         radius: f64,
     },
-    /// A solid polygon, convex or not, in world coordinates [m].
+    /// A solid polygon, convex or not, in world coordinates \[m].
     Polygon(Vec<Vector64>),
 }
 

@@ -38,18 +38,18 @@ pub struct BodyDescription {
     /// Part of its wobble that such a body loses in a 60th of a second, 0 to 1.
     #[serde(default = "tenth")]
     pub damping: f64,
-    /// Radius of a disc [m].
+    /// Radius of a disc \[m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
-    /// Width and height of a box [m].
+    /// Width and height of a box \[m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub size: Option<[f64; 2]>,
-    /// Corners of a polygon, convex or not, seen from `position` [m].
+    /// Corners of a polygon, convex or not, seen from `position` \[m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub outline: Option<Vec<[f64; 2]>>,
-    /// Where the origin of the outline starts (the centre of a disc or box) [m].
+    /// Where the origin of the outline starts (the centre of a disc or box) \[m].
     pub position: [f64; 2],
-    /// Rotation at the start, counter-clockwise [degrees].
+    /// Rotation at the start, counter-clockwise \[degrees].
     #[serde(default)]
     pub angle_deg: f64,
     /// Velocity of the centre of mass at the start [m/s].
@@ -61,7 +61,7 @@ pub struct BodyDescription {
     /// Mass per area [kg/m^2].
     #[serde(default = "water_density")]
     pub density: f64,
-    /// Mass, instead of the density [kg].
+    /// Mass, instead of the density \[kg].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub mass: Option<f64>,
     /// Coulomb friction coefficient, 0.5 by default as for walls. Two surfaces have both combined by
@@ -153,7 +153,7 @@ pub struct Copies {
     /// Rows.
     #[serde(default = "one_row")]
     pub rows: u32,
-    /// From one body of a row to the next, and from one row to the next [m].
+    /// From one body of a row to the next, and from one row to the next \[m].
     pub step: [f64; 2],
     /// Shape of the heap.
     #[serde(default)]

@@ -28,7 +28,7 @@ pub struct ContactDescription {
     /// Speed of the fastest point of a body below which it may sleep, relative to sqrt(gravity x size of the body).
     /// Nothing sleeps without gravity, while it drifts, while its speed grows, or while a motor turns it.
     pub sleep_speed: f64,
-    /// Time at rest before bodies that touch each other sleep; left out, 30 frames [s].
+    /// Time at rest before bodies that touch each other sleep; left out, 30 frames \[s].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub sleep_delay: Option<f64>,
 }
@@ -92,7 +92,7 @@ impl Default for ContactDescription {
 }
 
 impl ContactDescription {
-    /// Time at rest before bodies sleep, at this number of frames per second [s].
+    /// Time at rest before bodies sleep, at this number of frames per second \[s].
     pub(crate) fn rest_time(&self, fps: f64) -> f64 {
         self.sleep_delay.unwrap_or(SLEEP_FRAMES / fps)
     }

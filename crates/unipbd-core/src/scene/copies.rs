@@ -17,7 +17,7 @@ impl BodyDescription {
         }
     }
 
-    /// Names and starting places [m] of the body and its copies; `number` names a body without a name.
+    /// Names and starting places \[m] of the body and its copies; `number` names a body without a name.
     pub(crate) fn instances(&self, number: usize) -> impl Iterator<Item = (String, Vector64)> {
         let name = if self.name.is_empty() { format!("body {number}") } else { self.name.clone() };
         let copied = self.copies.is_some();
@@ -25,7 +25,7 @@ impl BodyDescription {
         self.places().enumerate().map(move |(copy, place)| (named(copy), place))
     }
 
-    /// Starting places of the body and its copies, row by row [m].
+    /// Starting places of the body and its copies, row by row \[m].
     pub(crate) fn places(&self) -> impl Iterator<Item = Vector64> {
         let origin = Vector64::from(self.position);
         let alone = Copies { columns: 1, rows: 1, step: [0.0; 2], heap: Heap::Grid };

@@ -12,15 +12,15 @@ const LIGHT: u64 = 5_000_000;
 /// A place with too many particles.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Crowd {
-    /// Middle of the fullest square [m].
+    /// Middle of the fullest square \[m].
     pub place: Vector64,
     /// Particles in it.
     pub count: u64,
-    /// Side of the square [m].
+    /// Side of the square \[m].
     pub side: f64,
 }
 
-/// The fullest square of side `reach` [m], if lists of pairs would grow out of hand where the new points are. Points
+/// The fullest square of side `reach` \[m], if lists of pairs would grow out of hand where the new points are. Points
 /// that are there already count where new ones join them.
 pub(crate) fn crowd(
     new: impl IntoIterator<Item = Vector64>,

@@ -15,11 +15,11 @@ pub struct Scene {
     pub name: String,
     /// What the scene shows and what to look at.
     pub description: String,
-    /// Rest distance between neighbouring particles, dx [m].
+    /// Rest distance between neighbouring particles, dx \[m].
     pub spacing: f64,
     /// Gravitational acceleration [m/s^2].
     pub gravity: [f64; 2],
-    /// Simulated time of a run [s].
+    /// Simulated time of a run \[s].
     pub duration: f64,
     /// Output frames per simulated second [1/s].
     pub fps: f64,
@@ -162,9 +162,9 @@ pub struct Environment {
     pub velocity: [f64; 2],
     /// Amplitude of smooth random gusts added to the velocity [m/s].
     pub gusts: f64,
-    /// Length over which a gust changes [m]; 0 means 10 spacings.
+    /// Length over which a gust changes \[m]; 0 means 10 spacings.
     pub gust_length: f64,
-    /// Time over which a gust changes [s]; 0 means 0.5 s.
+    /// Time over which a gust changes \[s]; 0 means 0.5 s.
     pub gust_time: f64,
 }
 
@@ -173,16 +173,16 @@ pub struct Environment {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct Domain {
-    /// `[from, to]` of a periodic x axis [m].
+    /// `[from, to]` of a periodic x axis \[m].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub periodic_x: Option<[f64; 2]>,
-    /// `[from, to]` of a periodic y axis [m].
+    /// `[from, to]` of a periodic y axis \[m].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub periodic_y: Option<[f64; 2]>,
-    /// Lower left corner of the region outside which particles are removed [m].
+    /// Lower left corner of the region outside which particles are removed \[m].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub remove_below: Option<[f64; 2]>,
-    /// Upper right corner of the region outside which particles are removed [m].
+    /// Upper right corner of the region outside which particles are removed \[m].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub remove_above: Option<[f64; 2]>,
 }
@@ -192,10 +192,10 @@ pub struct Domain {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct View {
-    /// Lower left corner of the picture [m]; left out, the picture fits the particles and walls.
+    /// Lower left corner of the picture \[m]; left out, the picture fits the particles and walls.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub min: Option<[f64; 2]>,
-    /// Upper right corner of the picture [m].
+    /// Upper right corner of the picture \[m].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max: Option<[f64; 2]>,
 }

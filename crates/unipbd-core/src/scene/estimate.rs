@@ -5,7 +5,7 @@ use super::{Emitter, Profile, Scene, SubstepLaw, Substeps};
 
 /// Memory per particle [byte]: columns, multipliers and about 20 stored neighbours.
 pub const BYTES_PER_PARTICLE: u64 = 300;
-/// Rough time per particle and substep on one core [s].
+/// Rough time per particle and substep on one core \[s].
 pub const SECONDS_PER_PARTICLE_AND_SUBSTEP: f64 = 60e-9;
 /// The same with the pressure grid, whose substeps are long: each has a grid to solve and a list to make.
 pub const SECONDS_WITH_PRESSURE_GRID: f64 = 160e-9;
@@ -22,9 +22,9 @@ pub struct Estimate {
     pub particles_at_peak: u64,
     /// Substeps per frame at the start: the given number, or what `"auto"` would choose.
     pub substeps: u32,
-    /// Memory at the peak [byte], at [`BYTES_PER_PARTICLE`].
+    /// Memory at the peak \[byte], at [`BYTES_PER_PARTICLE`].
     pub memory_bytes: u64,
-    /// Computing time of the whole run on one core [s], at [`SECONDS_PER_PARTICLE_AND_SUBSTEP`] and the
+    /// Computing time of the whole run on one core \[s], at [`SECONDS_PER_PARTICLE_AND_SUBSTEP`] and the
     /// substeps of the start: right to a factor of about 3.
     pub cost_seconds: f64,
 }
@@ -81,7 +81,7 @@ fn rates(emitter: &Emitter, spacing: f64) -> (f64, f64) {
 struct Population {
     start: f64,
     peak: f64,
-    /// Integral over the run [s].
+    /// Integral over the run \[s].
     particle_seconds: f64,
 }
 
@@ -163,7 +163,7 @@ fn largest_speed(scene: &Scene) -> f64 {
     blocks.chain(discs).chain(emitters).fold(0.0, f64::max)
 }
 
-/// Liquid at the start along gravity: the lowest and highest place [m] and the density [kg/m^2].
+/// Liquid at the start along gravity: the lowest and highest place \[m] and the density [kg/m^2].
 struct Layer {
     low: f64,
     high: f64,

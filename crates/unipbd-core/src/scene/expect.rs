@@ -12,7 +12,7 @@ pub struct Expect {
     /// Largest density error of any particle over the run, after `settled`, as a fraction.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub density_error_max: Option<f64>,
-    /// Time from which density errors count [s].
+    /// Time from which density errors count \[s].
     pub settled: f64,
     /// Largest growth of the energy over its start, as a fraction of the energy that the start can
     /// give away: kinetic, and potential above the lowest point.
@@ -45,13 +45,13 @@ pub struct MaterialExpectation {
     /// Number of particles.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub count: Option<[f64; 2]>,
-    /// Mean x of its particles [m].
+    /// Mean x of its particles \[m].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean_x: Option<[f64; 2]>,
-    /// Mean y of its particles [m].
+    /// Mean y of its particles \[m].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mean_y: Option<[f64; 2]>,
-    /// The y that a twentieth of its particles lie above [m].
+    /// The y that a twentieth of its particles lie above \[m].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub high_y: Option<[f64; 2]>,
 }
@@ -63,13 +63,13 @@ pub struct MaterialExpectation {
 pub struct BodyExpectation {
     /// Its name; a name with copies stands for each of them.
     pub name: String,
-    /// x of its centre of mass [m].
+    /// x of its centre of mass \[m].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub x: Option<[f64; 2]>,
-    /// y of its centre of mass [m].
+    /// y of its centre of mass \[m].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub y: Option<[f64; 2]>,
-    /// Rotation, counter-clockwise, whole turns included [degrees].
+    /// Rotation, counter-clockwise, whole turns included \[degrees].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub angle_deg: Option<[f64; 2]>,
     /// Speed of its centre of mass [m/s].

@@ -12,14 +12,14 @@ pub struct Gauge {
     /// Material that it reads; left out, all liquids, and for pressure and flow rate gases too.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub material: Option<String>,
-    /// Point on the line of a level, place of a pressure, point from which a front counts (the origin if left out) [m].
+    /// Point on the line of a level, place of a pressure, point from which a front counts (the origin if left out) \[m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub at: Option<[f64; 2]>,
     /// Direction of a level (up if left out), of a front, of the component of a force (left out, the whole force);
     /// need not have length 1.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub direction: Option<[f64; 2]>,
-    /// Radius around `at` over which a pressure is averaged; left out, three spacings [m].
+    /// Radius around `at` over which a pressure is averaged; left out, three spacings \[m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
     /// Wall with a name (a side of a tank is `NAME left`) or body of a force.
@@ -29,7 +29,7 @@ pub struct Gauge {
     #[serde(default)]
     pub of: ForcePart,
     /// Ends of the line of a flow rate; what crosses it to the right of the way from the first to the second counts
-    /// as positive [m].
+    /// as positive \[m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub line: Option<[[f64; 2]; 2]>,
 }
@@ -39,16 +39,16 @@ pub struct Gauge {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum GaugeKind {
-    /// Distance from `at` to the surface along `direction`, on the line through both [m].
+    /// Distance from `at` to the surface along `direction`, on the line through both \[m].
     #[default]
     Level,
     /// Pressure at `at` [N/m].
     Pressure,
-    /// Mean force over the last frame `on` a wall or body: its component along `direction`, or its size [N].
+    /// Mean force over the last frame `on` a wall or body: its component along `direction`, or its size \[N].
     Force,
     /// Area that crosses `line` per time [m^2/s].
     FlowRate,
-    /// Distance from `at` to the farthest point along `direction`, wherever it is [m].
+    /// Distance from `at` to the farthest point along `direction`, wherever it is \[m].
     Front,
 }
 

@@ -15,13 +15,13 @@ pub struct JointDescription {
     /// Name of the second body; left out, the world.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub other: Option<String>,
-    /// Anchor on the first body, where the scene starts [m].
+    /// Anchor on the first body, where the scene starts \[m].
     pub at: [f64; 2],
-    /// Anchor on the second body or in the world, where the scene starts; left out, `at` [m].
+    /// Anchor on the second body or in the world, where the scene starts; left out, `at` \[m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub other_at: Option<[f64; 2]>,
     /// Length of a rod, a rope, or of the rope of a pulley beside its stretch between the wheels; left out, as the scene
-    /// starts [m].
+    /// starts \[m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub length: Option<f64>,
     /// Inverse stiffness of a rod or rope, 0 is rigid [m/N].
@@ -34,10 +34,10 @@ pub struct JointDescription {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub axis: Option<[f64; 2]>,
     /// Smallest and largest angle of a hinge, of the first body against the second, from where the scene starts
-    /// [degrees].
+    /// \[degrees].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limits_deg: Option<[f64; 2]>,
-    /// Smallest and largest way of the first anchor of a slider from the second along the axis [m].
+    /// Smallest and largest way of the first anchor of a slider from the second along the axis \[m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub limits: Option<[f64; 2]>,
     /// Angular velocity that the motor of a hinge wants [degrees/s].
@@ -49,19 +49,19 @@ pub struct JointDescription {
     /// Speed along the axis that the motor of a slider wants [m/s].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub motor_speed: Option<f64>,
-    /// Largest force of the motor of a slider [N].
+    /// Largest force of the motor of a slider \[N].
     #[serde(default = "boundless")]
     pub motor_force: f64,
-    /// Wheel of a pulley on the side of the first body, fixed in the world [m].
+    /// Wheel of a pulley on the side of the first body, fixed in the world \[m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub wheel: Option<[f64; 2]>,
-    /// Wheel of a pulley on the side of the second body; left out, `wheel` [m].
+    /// Wheel of a pulley on the side of the second body; left out, `wheel` \[m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub other_wheel: Option<[f64; 2]>,
     /// Purchase of a pulley: the second body moves 1/ratio as far, and is pulled ratio times as hard.
     #[serde(default = "one")]
     pub ratio: f64,
-    /// Force above which the joint breaks, mean over a frame; left out, never [N].
+    /// Force above which the joint breaks, mean over a frame; left out, never \[N].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub break_force: Option<f64>,
     /// Torque about the first anchor above which the joint breaks, mean over a frame; left out, never [N m].
@@ -73,7 +73,7 @@ pub struct JointDescription {
 }
 
 impl JointDescription {
-    /// A joint between a body and the world at a point [m].
+    /// A joint between a body and the world at a point \[m].
     pub fn new(kind: JointRule, body: &str, at: [f64; 2]) -> Self {
         JointDescription {
             name: String::new(),

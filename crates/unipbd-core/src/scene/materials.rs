@@ -11,7 +11,7 @@ pub struct Liquid {
     pub name: String,
     /// Rest density [kg/m^2].
     pub density: f64,
-    /// Mass of a particle; left out, that of a square of the spacing [kg].
+    /// Mass of a particle; left out, that of a square of the spacing \[kg].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub particle_mass: Option<f64>,
     /// XSPH smoothing (Schechter & Bridson 2012), 0 to 1: the fraction of velocity differences that each substep
@@ -21,12 +21,12 @@ pub struct Liquid {
     pub kinematic_viscosity: f64,
     /// Whether it has a free surface, or fills its domain and resists dilation too.
     pub surface: LiquidSurface,
-    /// Surface tension sigma: the force along a line of the surface, in two dimensions a point [N]. It is that of
+    /// Surface tension sigma: the force along a line of the surface, in two dimensions a point \[N]. It is that of
     /// three dimensions [N/m] times the depth of the scene: 0.0728 for water in a sheet one metre thick. Between two
     /// liquids it is the sum of both.
     pub surface_tension: f64,
     /// Angle between its surface and walls or bodies, measured within it: 0 spreads, 180 pearls off; without surface
-    /// tension it has no effect [deg].
+    /// tension it has no effect \[deg].
     pub contact_angle: f64,
     /// Drag against the air that grows with the square of the speed [1/m].
     pub quadratic_drag: f64,
@@ -76,7 +76,7 @@ pub struct Gas {
     pub name: String,
     /// Rest density [kg/m^2].
     pub density: f64,
-    /// Mass of a particle; left out, that of a square of the spacing [kg].
+    /// Mass of a particle; left out, that of a square of the spacing \[kg].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub particle_mass: Option<f64>,
     /// Acceleration is `gravity_factor` x temperature x gravity; negative lets hot gas rise.
@@ -97,13 +97,13 @@ pub struct Gas {
     pub xsph: f64,
     /// Kinematic viscosity nu [m^2/s].
     pub kinematic_viscosity: f64,
-    /// Time after which a particle is removed [s]; left out, it stays.
+    /// Time after which a particle is removed \[s]; left out, it stays.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lifetime: Option<f64>,
-    /// A particle with no smoke within this distance is removed [m]; left out, it stays.
+    /// A particle with no smoke within this distance is removed \[m]; left out, it stays.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub keep_radius: Option<f64>,
-    /// Age below which `keep_radius` removes nothing [s].
+    /// Age below which `keep_radius` removes nothing \[s].
     pub keep_age: f64,
     /// Colour in pictures and logs, `"#rrggbb"`.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -139,7 +139,7 @@ impl Default for Gas {
 pub struct Smoke {
     /// Name by which emitters refer to it.
     pub name: String,
-    /// Time after which a marker is removed [s]; left out, it stays.
+    /// Time after which a marker is removed \[s]; left out, it stays.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub lifetime: Option<f64>,
     /// Colour in pictures and logs, `"#rrggbb"`.
@@ -220,7 +220,7 @@ impl<'a> MaterialRef<'a> {
         }
     }
 
-    /// Mass of one of its particles [kg]; 0 for smoke and bodies.
+    /// Mass of one of its particles \[kg]; 0 for smoke and bodies.
     pub fn particle_mass(&self, spacing: f64) -> f64 {
         let given = match self {
             MaterialRef::Liquid(liquid) => liquid.particle_mass,

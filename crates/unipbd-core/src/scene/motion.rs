@@ -12,13 +12,13 @@ pub struct MotionDescription {
     pub velocity: [f64; 2],
     /// Constant angular velocity, counter-clockwise [degrees/s].
     pub spin_deg: f64,
-    /// Largest displacement of an oscillation [m].
+    /// Largest displacement of an oscillation \[m].
     pub amplitude: [f64; 2],
-    /// Largest rotation of an oscillation [degrees].
+    /// Largest rotation of an oscillation \[degrees].
     pub swing_deg: f64,
     /// Frequency of the oscillation [1/s].
     pub frequency: f64,
-    /// Phase of the oscillation at time 0 [degrees].
+    /// Phase of the oscillation at time 0 \[degrees].
     pub phase_deg: f64,
     /// Stations of a path by increasing time.
     #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -39,12 +39,12 @@ pub struct MotionDescription {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Station {
-    /// When [s].
+    /// When \[s].
     pub time: f64,
-    /// Displacement from the start [m].
+    /// Displacement from the start \[m].
     #[serde(default)]
     pub offset: [f64; 2],
-    /// Rotation from the start [degrees].
+    /// Rotation from the start \[degrees].
     #[serde(default)]
     pub turn_deg: f64,
 }
@@ -56,15 +56,15 @@ pub struct Station {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct MotionTable {
-    /// Times, increasing [s].
+    /// Times, increasing \[s].
     pub time: Vec<f64>,
-    /// Displacements from the start, along x; left out, none [m].
+    /// Displacements from the start, along x; left out, none \[m].
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub x: Vec<f64>,
-    /// Displacements from the start, along y; left out, none [m].
+    /// Displacements from the start, along y; left out, none \[m].
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub y: Vec<f64>,
-    /// Rotations from the start; left out, none [degrees].
+    /// Rotations from the start; left out, none \[degrees].
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub angle_deg: Vec<f64>,
 }
@@ -89,7 +89,7 @@ pub struct Shaking {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct AccelerationTable {
-    /// Times, increasing [s].
+    /// Times, increasing \[s].
     pub time: Vec<f64>,
     /// Accelerations along x; left out, none [m/s^2].
     #[serde(skip_serializing_if = "Vec::is_empty")]

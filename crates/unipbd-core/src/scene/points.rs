@@ -9,7 +9,7 @@ use crate::math::{Real, real};
 pub struct Points {
     /// Name of the material.
     pub material: String,
-    /// Where the particles are [m].
+    /// Where the particles are \[m].
     pub positions: Vec<[f64; 2]>,
     /// Velocity of all of them [m/s].
     #[serde(default)]

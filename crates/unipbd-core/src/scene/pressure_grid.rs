@@ -10,7 +10,7 @@ const LEAST_PARTICLES: f64 = 60.0;
 /// could lie between the corners of its cells, and water of 50 spacings leaks through them.
 pub(crate) const WALL_OF_GRID: f64 = 4.0;
 
-/// Width of a cell of the grid [spacings]; along periodic axes it may differ by this part.
+/// Width of a cell of the grid \[spacings]; along periodic axes it may differ by this part.
 pub(crate) const CELL: f64 = 2.0;
 const CELL_ERROR: f64 = 0.12;
 /// How well cells fill a period, and the least number of them.

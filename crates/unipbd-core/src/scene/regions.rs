@@ -5,16 +5,16 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields, default)]
 pub struct Region {
-    /// Lower left corner [m].
+    /// Lower left corner \[m].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub min: Option<[f64; 2]>,
-    /// Upper right corner [m].
+    /// Upper right corner \[m].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub max: Option<[f64; 2]>,
-    /// Centre [m].
+    /// Centre \[m].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub center: Option<[f64; 2]>,
-    /// Radius [m].
+    /// Radius \[m].
     #[serde(skip_serializing_if = "Option::is_none")]
     pub radius: Option<f64>,
 }
@@ -37,10 +37,10 @@ pub struct Injector {
     /// Temperature of new gas.
     #[serde(default)]
     pub temperature: f64,
-    /// Time at which it starts [s].
+    /// Time at which it starts \[s].
     #[serde(default)]
     pub start: f64,
-    /// Time at which it stops [s]; left out, never.
+    /// Time at which it stops \[s]; left out, never.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stop: Option<f64>,
     /// Adds nothing while there are this many particles of the material; left out, no limit.
@@ -61,10 +61,10 @@ pub struct Sink {
     /// Most particles removed per second [1/s]; left out, no limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub rate: Option<f64>,
-    /// Time at which it starts [s].
+    /// Time at which it starts \[s].
     #[serde(default)]
     pub start: f64,
-    /// Time at which it stops [s]; left out, never.
+    /// Time at which it stops \[s]; left out, never.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stop: Option<f64>,
 }

@@ -8,11 +8,11 @@ pub struct Rope {
     /// Name of what its points are made of: a solid, which no fluid feels, or a liquid, which all fluids
     /// feel and which floats in a heavier one.
     pub material: String,
-    /// First end [m].
+    /// First end \[m].
     pub from: [f64; 2],
-    /// Last end [m].
+    /// Last end \[m].
     pub to: [f64; 2],
-    /// Length, at least the distance of the ends; left out, that distance [m].
+    /// Length, at least the distance of the ends; left out, that distance \[m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub length: Option<f64>,
     /// Inverse stiffness of each piece, 0 does not stretch [m/N].
@@ -91,7 +91,7 @@ impl Held {
 }
 
 impl Rope {
-    /// Length of the whole rope [m].
+    /// Length of the whole rope \[m].
     pub(crate) fn full_length(&self) -> f64 {
         let distance = libm::hypot(self.to[0] - self.from[0], self.to[1] - self.from[1]);
         self.length.unwrap_or(distance)

@@ -71,7 +71,7 @@ impl Default for SolverSettings {
 
 /// What depends on the kernel radius.
 struct ByRadius {
-    /// Kernel radius [spacings].
+    /// Kernel radius \[spacings].
     radius: f64,
     /// Relaxation that is stable with a free surface and gradients at the start or at the prediction...
     free: f64,

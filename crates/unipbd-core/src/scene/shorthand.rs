@@ -18,21 +18,21 @@ impl Smoke {
 }
 
 impl Block {
-    /// A rectangle of a material at rest, from its lower left to its upper right corner [m].
+    /// A rectangle of a material at rest, from its lower left to its upper right corner \[m].
     pub fn new(material: &str, min: [f64; 2], max: [f64; 2]) -> Self {
         Block { material: material.to_owned(), min, max, velocity: [0.0; 2], jitter: 0.0, temperature: 0.0 }
     }
 }
 
 impl HalfPlane {
-    /// A wall at rest through a point [m]; the normal points towards the particles.
+    /// A wall at rest through a point \[m]; the normal points towards the particles.
     pub fn new(point: [f64; 2], normal: [f64; 2]) -> Self {
         HalfPlane { name: String::new(), point, normal, velocity: [0.0; 2], friction: None, slip: Slip::Free }
     }
 }
 
 impl Tank {
-    /// A container, open at the top, from its lower left to its upper right corner [m].
+    /// A container, open at the top, from its lower left to its upper right corner \[m].
     pub fn new(min: [f64; 2], max: [f64; 2]) -> Self {
         let (open, without_slip) = (vec![Side::Top], Vec::new());
         Tank { name: String::new(), min, max, open, friction: None, slip: Slip::Free, without_slip }
@@ -40,29 +40,29 @@ impl Tank {
 }
 
 impl Obstacle {
-    /// A solid rectangle, from its lower left to its upper right corner [m].
+    /// A solid rectangle, from its lower left to its upper right corner \[m].
     pub fn new(min: [f64; 2], max: [f64; 2]) -> Self {
         Obstacle { name: String::new(), min, max, friction: None, slip: Slip::Free }
     }
 }
 
 impl BodyDescription {
-    /// A box of this width and height about a place [m], of water's density.
+    /// A box of this width and height about a place \[m], of water's density.
     pub fn rectangle(size: [f64; 2], position: [f64; 2]) -> Self {
         BodyDescription { size: Some(size), ..BodyDescription::at(position) }
     }
 
-    /// A disc about a place [m], of water's density.
+    /// A disc about a place \[m], of water's density.
     pub fn disc(radius: f64, position: [f64; 2]) -> Self {
         BodyDescription { radius: Some(radius), ..BodyDescription::at(position) }
     }
 
-    /// A polygon whose corners are seen from a place [m], of water's density.
+    /// A polygon whose corners are seen from a place \[m], of water's density.
     pub fn polygon(outline: Vec<[f64; 2]>, position: [f64; 2]) -> Self {
         BodyDescription { outline: Some(outline), ..BodyDescription::at(position) }
     }
 
-    /// A body of water's density at a place [m], its outline still to be set.
+    /// A body of water's density at a place \[m], its outline still to be set.
     pub fn at(position: [f64; 2]) -> Self {
         BodyDescription {
             name: String::new(),

@@ -7,9 +7,9 @@ use serde::{Deserialize, Serialize};
 pub struct Block {
     /// Name of the material.
     pub material: String,
-    /// Lower left corner [m]; the first particle sits half a spacing inside. Particles inside bodies are left out.
+    /// Lower left corner \[m]; the first particle sits half a spacing inside. Particles inside bodies are left out.
     pub min: [f64; 2],
-    /// Upper right corner [m].
+    /// Upper right corner \[m].
     pub max: [f64; 2],
     /// Velocity at the start [m/s].
     #[serde(default)]
@@ -29,9 +29,9 @@ pub struct Block {
 pub struct Disc {
     /// Name of the material.
     pub material: String,
-    /// Centre [m].
+    /// Centre \[m].
     pub center: [f64; 2],
-    /// Radius [m].
+    /// Radius \[m].
     pub radius: f64,
     /// Velocity at the start [m/s].
     #[serde(default)]
@@ -54,12 +54,12 @@ pub struct Emitter {
     pub name: String,
     /// Name of the material that is emitted.
     pub material: String,
-    /// Middle of the face [m].
+    /// Middle of the face \[m].
     pub position: [f64; 2],
     /// Direction of the flow; need not have length 1.
     #[serde(default = "up")]
     pub direction: [f64; 2],
-    /// Width of the face without the sheath [m].
+    /// Width of the face without the sheath \[m].
     ///
     /// The columns of particles are a whole number; they move apart or together, and their rows the other way, so that
     /// the flow is that of the width.
@@ -75,10 +75,10 @@ pub struct Emitter {
     /// Random displacement of emitted particles, as a fraction of the spacing.
     #[serde(default = "emitter_jitter")]
     pub jitter: f64,
-    /// Time at which it starts [s].
+    /// Time at which it starts \[s].
     #[serde(default)]
     pub start: f64,
-    /// Time at which it stops [s]; left out, never.
+    /// Time at which it stops \[s]; left out, never.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub stop: Option<f64>,
     /// Slows down when the fluid ahead of the face is compressed.
@@ -109,7 +109,7 @@ pub enum Profile {
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Sheath {
-    /// Thickness on each side [m].
+    /// Thickness on each side \[m].
     pub thickness: f64,
     /// Speed at the face [m/s]; left out, the speed of the core.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -132,7 +132,7 @@ pub struct SmokeSource {
 }
 
 impl Emitter {
-    /// A nozzle that blows upwards from its middle [m], this wide [m] and at this speed [m/s], from the start on.
+    /// A nozzle that blows upwards from its middle \[m], this wide \[m] and at this speed [m/s], from the start on.
     pub fn new(material: &str, position: [f64; 2], width: f64, speed: f64) -> Self {
         Emitter {
             name: String::new(),
@@ -152,7 +152,7 @@ impl Emitter {
         }
     }
 
-    /// Columns of particles across the core, and their distance [m], for this spacing [m]. Their number is whole; their
+    /// Columns of particles across the core, and their distance \[m], for this spacing \[m]. Their number is whole; their
     /// distance makes up for it, so that the flow is that of the width.
     pub fn columns(&self, spacing: f64) -> (usize, f64) {
         columns(self.width, spacing)

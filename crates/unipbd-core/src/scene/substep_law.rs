@@ -65,7 +65,7 @@ impl SubstepLaw {
         self.tension.pressure
     }
 
-    /// Substeps of a frame of this length [s] by speed [m/s] (CFL), by the trust region (the same for the speed that
+    /// Substeps of a frame of this length \[s] by speed [m/s] (CFL), by the trust region (the same for the speed that
     /// this pressure over density [m^2/s^2] may still bring about: the compression within one substep stays below
     /// an eighth), by the target compression at this pressure, and by surface tension.
     pub fn wanted(&self, frame: f64, speed: f64, pressure: f64) -> [f64; 4] {

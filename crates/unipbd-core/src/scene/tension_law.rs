@@ -2,11 +2,11 @@
 
 use super::{Liquid, Scene};
 
-/// Radius of the kernel of surface tension [spacings].
+/// Radius of the kernel of surface tension \[spacings].
 pub(crate) const TENSION_RADIUS: f64 = 3.0;
 /// Longest substep over sqrt(rho dx^3/sigma), the time of the shortest wave: at 0.25 particles of the surface boil.
 const LONGEST: f64 = 0.15;
-/// Least radius of curvature whose pressure is expected [spacings].
+/// Least radius of curvature whose pressure is expected \[spacings].
 const SMALLEST_RADIUS: f64 = 2.0;
 
 /// What the tension of a liquid asks for.

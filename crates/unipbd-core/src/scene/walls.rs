@@ -10,7 +10,7 @@ pub struct HalfPlane {
     /// Name under which the force of fluids and bodies on it is reported; left out, the force is not measured.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub name: String,
-    /// A point on the wall [m].
+    /// A point on the wall \[m].
     pub point: [f64; 2],
     /// Direction from the wall towards the particles; need not have length 1.
     pub normal: [f64; 2],
@@ -35,9 +35,9 @@ pub struct Tank {
     /// Name under which the force of fluids and bodies on it is reported; left out, the force is not measured; its sides are `NAME left` and so on.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub name: String,
-    /// Lower left corner [m].
+    /// Lower left corner \[m].
     pub min: [f64; 2],
-    /// Upper right corner [m].
+    /// Upper right corner \[m].
     pub max: [f64; 2],
     /// Sides without a wall.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -62,9 +62,9 @@ pub struct Obstacle {
     /// Name under which the force of fluids and bodies on it is reported; left out, the force is not measured.
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub name: String,
-    /// Lower left corner [m].
+    /// Lower left corner \[m].
     pub min: [f64; 2],
-    /// Upper right corner [m].
+    /// Upper right corner \[m].
     pub max: [f64; 2],
     /// Coulomb friction coefficient; left out, 0.5 for bodies and 0 for particles. A body on it has both coefficients
     /// combined by `contacts.friction_rule`.

@@ -6,19 +6,19 @@ use serde::{Deserialize, Serialize};
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Wave {
-    /// Height of the surface or interface that becomes wavy [m].
+    /// Height of the surface or interface that becomes wavy \[m].
     pub level: f64,
-    /// Amplitude there, at least one spacing: the lattice shows no less [m].
+    /// Amplitude there, at least one spacing: the lattice shows no less \[m].
     pub amplitude: f64,
-    /// Wavelength [m].
+    /// Wavelength \[m].
     pub wavelength: f64,
-    /// Phase at x = 0 [degrees]; between walls it must be 0 or 180, and the walls half a wavelength apart or more.
+    /// Phase at x = 0 \[degrees]; between walls it must be 0 or 180, and the walls half a wavelength apart or more.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub phase_deg: Option<f64>,
-    /// Height of the floor, where nothing moves up or down; left out, far below [m].
+    /// Height of the floor, where nothing moves up or down; left out, far below \[m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub bottom: Option<f64>,
-    /// Height of the lid; left out, far above [m].
+    /// Height of the lid; left out, far above \[m].
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub top: Option<f64>,
 }

@@ -6,7 +6,7 @@ use crate::math::Vector64;
 /// The convex pieces of a solid.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Core {
-    /// Radius of a disc; 0 for a polygon [m].
+    /// Radius of a disc; 0 for a polygon \[m].
     pub radius: f64,
     /// Convex pieces; a disc is one piece with one vertex.
     pub pieces: Vec<ConvexPiece>,
@@ -15,7 +15,7 @@ pub struct Core {
 /// A convex polygon, counter-clockwise.
 #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct ConvexPiece {
-    /// Vertices [m].
+    /// Vertices \[m].
     pub vertices: Vec<Vector64>,
     /// Outward normal of the edge that starts at each vertex; zero for a single vertex.
     pub normals: Vec<Vector64>,

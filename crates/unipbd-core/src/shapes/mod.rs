@@ -20,10 +20,10 @@ use std::f64::consts::{PI, TAU};
 pub enum Shape {
     /// A disc about the origin.
     Disc {
-        /// Radius [m].
+        /// Radius \[m].
         radius: f64,
     },
-    /// A simple polygon, convex or not: corners in order, of either orientation [m].
+    /// A simple polygon, convex or not: corners in order, of either orientation \[m].
     Polygon(Vec<Vector64>),
 }
 
@@ -56,7 +56,7 @@ impl std::error::Error for ShapeError {}
 /// The nearest point of a boundary to a query point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Nearest {
-    /// Distance to the boundary, negative inside the solid [m].
+    /// Distance to the boundary, negative inside the solid \[m].
     pub distance: f64,
     /// Unit gradient of the distance: out of the solid.
     pub normal: Vector64,
@@ -105,7 +105,7 @@ impl Shape {
         }
     }
 
-    /// Twice the area over the perimeter: the thickness of a long shape, the radius of a disc [m].
+    /// Twice the area over the perimeter: the thickness of a long shape, the radius of a disc \[m].
     pub fn thickness(&self) -> f64 {
         let perimeter = match self {
             Shape::Disc { radius } => TAU * radius,
@@ -122,7 +122,7 @@ impl Shape {
         }
     }
 
-    /// Radius of the smallest disc about the origin that contains the shape [m].
+    /// Radius of the smallest disc about the origin that contains the shape \[m].
     pub fn bounding_radius(&self) -> f64 {
         match self {
             Shape::Disc { radius } => *radius,

@@ -8,7 +8,7 @@ use crate::math::Vector64;
 pub struct Moments {
     /// Area [m^2].
     pub area: f64,
-    /// Centroid [m].
+    /// Centroid \[m].
     pub centroid: Vector64,
     /// Integral of the squared distance to the centroid [m^4]; times density it is the moment of inertia.
     pub second: f64,

@@ -6,7 +6,7 @@ use crate::math::Vector64;
 /// Points that represent equal parts of a shape.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Samples {
-    /// Points, in the coordinates of the shape [m]; their mean is the centroid.
+    /// Points, in the coordinates of the shape \[m]; their mean is the centroid.
     pub points: Vec<Vector64>,
     /// Area of each [m^2]: together exactly the area of the shape, close to the spacing squared.
     pub area: f64,
@@ -40,7 +40,7 @@ pub(super) fn fill(shape: &Shape, spacing: f64) -> Samples {
 }
 
 impl Shape {
-    /// Lower left and upper right corner of the box around the shape [m].
+    /// Lower left and upper right corner of the box around the shape \[m].
     pub(crate) fn bounds(&self) -> (Vector64, Vector64) {
         match self {
             Shape::Disc { radius } => (Vector64::splat(-radius), Vector64::splat(*radius)),

@@ -46,7 +46,7 @@ impl Layout {
         Layout { periodic, x: Axis::new(side, periodic.x), y: Axis::new(side, periodic.y) }
     }
 
-    /// The shorter side of a block [m].
+    /// The shorter side of a block \[m].
     pub fn side(&self) -> Real {
         1.0 / self.x.inverse.max(self.y.inverse)
     }
@@ -67,11 +67,11 @@ impl Layout {
 #[derive(Clone, Copy)]
 pub(super) struct Block {
     pub count: u32,
-    /// Sum of the particle displacements since rest began [m].
+    /// Sum of the particle displacements since rest began \[m].
     pub moved: f64,
-    /// The largest displacement [m].
+    /// The largest displacement \[m].
     pub farthest: Real,
-    /// Rest time of the particle that came to rest last [s].
+    /// Rest time of the particle that came to rest last \[s].
     pub rest: Real,
     /// Fastest particle [m/s].
     pub speed: Real,
@@ -85,7 +85,7 @@ impl Block {
     const EMPTY: Block =
         Block { count: 0, moved: 0.0, farthest: 0.0, rest: Real::INFINITY, speed: 0.0, sleepy: true, rough: false };
 
-    /// Mean particle displacement since rest began [m].
+    /// Mean particle displacement since rest began \[m].
     pub fn mean(&self) -> f64 {
         self.moved / f64::from(self.count.max(1))
     }

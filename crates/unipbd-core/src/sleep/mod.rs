@@ -56,7 +56,7 @@ pub(crate) struct LiquidSleep {
     order: Vec<u32>,
 }
 
-/// How long liquid must have been at rest before it sleeps [s].
+/// How long liquid must have been at rest before it sleeps \[s].
 fn delay(scene: &Scene) -> f64 {
     let gravity = Vector64::from(scene.gravity).length();
     let fall = if gravity > 0.0 { FALLS * (scene.spacing / gravity).sqrt() } else { 0.0 };

@@ -20,7 +20,7 @@ pub struct EmitterChange {
 }
 
 impl EmitterChange {
-    /// The description after the change; `now` [s].
+    /// The description after the change; `now` \[s].
     pub(crate) fn applied(&self, emitter: &Emitter, now: f64) -> Emitter {
         let mut emitter = emitter.clone();
         emitter.speed = self.speed.unwrap_or(emitter.speed);
@@ -71,7 +71,7 @@ impl EmitterSystem {
         self.emitters.push(Nozzle::new(emitter, kit, rng));
     }
 
-    /// Changes an emitter; `now` [s].
+    /// Changes an emitter; `now` \[s].
     pub(crate) fn change(&mut self, number: usize, change: &EmitterChange, kit: &Scene, now: f64) {
         let nozzle = &mut self.emitters[number];
         nozzle.description = change.applied(&nozzle.description, now);

@@ -5,9 +5,9 @@ use crate::scene::{Emitter, Profile};
 
 /// One column of the face.
 pub(super) struct Column {
-    /// Distance from the middle of the face [m].
+    /// Distance from the middle of the face \[m].
     pub offset: f64,
-    /// Distance of its particles [m].
+    /// Distance of its particles \[m].
     pub row: f64,
     pub speed: f64,
     pub temperature: Real,

@@ -78,7 +78,7 @@ impl RemovalRules {
         self.keep_radius > 0.0 || self.materials.iter().any(|rule| rule.lifetime.is_finite())
     }
 
-    /// Collects the rows to remove at this time [s], in ascending order.
+    /// Collects the rows to remove at this time \[s], in ascending order.
     pub fn find(&mut self, particles: &Particles, time: f64, parallelism: Parallelism, rows: &mut Vec<u32>) {
         rows.clear();
         self.sort_smoke(particles, parallelism);

@@ -41,7 +41,7 @@ struct Section {
 }
 
 impl State {
-    /// Simulated time [s].
+    /// Simulated time \[s].
     pub fn time(&self) -> f64 {
         self.clock.time
     }

@@ -16,7 +16,7 @@ const GRAVITY: &str = "gravity";
 
 /// Farthest place that a state may hold [spacings]: a run that gets there has long been of no use.
 const FARTHEST: f64 = 1e9;
-/// Longest substep of smoke [s].
+/// Longest substep of smoke \[s].
 const LONGEST_FRAME: f64 = 1e6;
 /// Most substeps of a frame; the settings of a scene allow fewer.
 const MOST_SUBSTEPS: u32 = 1_000_000;

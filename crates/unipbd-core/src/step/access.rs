@@ -15,7 +15,7 @@ use crate::sources::EmitterReading;
 macro_rules! shared_access {
     ($viewer:ty) => {
         impl $viewer {
-            /// Simulated time; in a substep, that of its start [s].
+            /// Simulated time; in a substep, that of its start \[s].
             pub fn time(&self) -> f64 {
                 self.world.clock.time
             }
@@ -30,7 +30,7 @@ macro_rules! shared_access {
                 &self.world.parts.particles
             }
 
-            /// Positions by row [m].
+            /// Positions by row \[m].
             pub fn positions(&self) -> &[crate::math::Vector] {
                 self.particles().positions()
             }
@@ -73,7 +73,7 @@ impl Solver {
         self.world.clock.frame
     }
 
-    /// Length of a frame [s].
+    /// Length of a frame \[s].
     pub fn frame_time(&self) -> f64 {
         self.world.parts.frame_time
     }
@@ -83,7 +83,7 @@ impl Solver {
         self.world.parts.exact_gravity
     }
 
-    /// Rest distance of particles [m].
+    /// Rest distance of particles \[m].
     pub fn spacing(&self) -> f64 {
         self.world.parts.spacing
     }
@@ -191,7 +191,7 @@ impl Solver {
         self.world.timings.spent()
     }
 
-    /// Memory held by particles, lists, indexes, constraint groups and effects [bytes].
+    /// Memory held by particles, lists, indexes, constraint groups and effects \[bytes].
     pub fn memory_bytes(&self) -> usize {
         self.world.memory_bytes()
     }

@@ -13,7 +13,7 @@ pub(super) struct Budget {
     pub most: Option<Duration>,
     /// Since the running frame began, and since its substeps did.
     running: Option<(Stopwatch, Stopwatch)>,
-    /// Time of a substep, and of the rest of the frame, in the last frames [s].
+    /// Time of a substep, and of the rest of the frame, in the last frames \[s].
     costs: Vec<[f64; 2]>,
     /// Whether an event has told that it cuts.
     pub told: bool,
@@ -25,7 +25,7 @@ impl Budget {
         Budget { most, ..Budget::default() }
     }
 
-    /// The second largest of the remembered costs: of a substep, and of the rest of a frame [s].
+    /// The second largest of the remembered costs: of a substep, and of the rest of a frame \[s].
     fn expected(&self) -> Option<[f64; 2]> {
         let of = |part: usize| {
             let mut costs: Vec<f64> = self.costs.iter().map(|cost| cost[part]).collect();

@@ -8,7 +8,7 @@ pub(crate) struct Clock {
     pub frame: u64,
     pub step: u64,
     pub time: f64,
-    /// Length of the last substep [s].
+    /// Length of the last substep \[s].
     pub dt: f64,
     pub substeps: u32,
     /// Substeps done of a frame that was interrupted by an error.

@@ -10,7 +10,7 @@ pub enum SolverError {
         stage: &'static str,
         /// Substep since the start.
         step: u64,
-        /// Simulated time [s].
+        /// Simulated time \[s].
         time: f64,
         /// Stable id of the particle.
         particle: u32,
@@ -23,7 +23,7 @@ pub enum SolverError {
     Body {
         /// Substep since the start.
         step: u64,
-        /// Simulated time [s].
+        /// Simulated time \[s].
         time: f64,
         /// Its name.
         body: String,
@@ -32,7 +32,7 @@ pub enum SolverError {
     Hook {
         /// Substep since the start.
         step: u64,
-        /// Simulated time [s].
+        /// Simulated time \[s].
         time: f64,
         /// Stable id of the particle.
         particle: u32,

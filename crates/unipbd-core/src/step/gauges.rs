@@ -11,11 +11,11 @@ const COMPANY: usize = 2;
 /// In spacings.
 const COMPANY_RADIUS: f64 = 2.0;
 /// From the top of a disc of one spacing back to the surface: on a lattice at rest, the mean over all lines is right
-/// [spacings].
+/// \[spacings].
 const BACK: f64 = 0.46;
-/// A pressure is averaged over this radius by default [spacings].
+/// A pressure is averaged over this radius by default \[spacings].
 const PRESSURE_RADIUS: f64 = 3.0;
-/// Half of the width of the band in which particles count as crossing a line [spacings].
+/// Half of the width of the band in which particles count as crossing a line \[spacings].
 const BAND: f64 = 2.0;
 /// A slope is fitted where points lie this far apart in every direction, as a part of their squared mean distance.
 const LEAST_SPREAD: f64 = 0.05;
@@ -45,7 +45,7 @@ impl World {
         }
     }
 
-    /// Rows of the material of a gauge, or of its phases, and where they are seen from a point [m].
+    /// Rows of the material of a gauge, or of its phases, and where they are seen from a point \[m].
     fn seen<'a>(&'a self, gauge: &'a Gauge, from: Vector64) -> impl Iterator<Item = (usize, Vector64)> + 'a {
         let (particles, materials) = (&self.parts.particles, &self.parts.materials);
         let gases = matches!(gauge.kind, GaugeKind::Pressure | GaugeKind::FlowRate);
@@ -108,7 +108,7 @@ impl World {
         (total > 0.0).then(|| fitted(&points, total))
     }
 
-    /// Mean force over the last frame [N].
+    /// Mean force over the last frame \[N].
     fn force_on(&self, gauge: &Gauge) -> Option<Vector64> {
         let name = gauge.on.as_deref()?;
         let part = |fluids: Vector64, contacts: Vector64| match gauge.of {

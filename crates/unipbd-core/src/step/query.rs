@@ -19,7 +19,7 @@ pub enum Solid {
 pub struct RayHit {
     /// What it meets.
     pub solid: Solid,
-    /// Where [m].
+    /// Where \[m].
     pub point: Vector64,
     /// Outward normal there, of length 1.
     pub normal: Vector64,
@@ -32,9 +32,9 @@ pub struct RayHit {
 pub struct NearestSolid {
     /// What it belongs to.
     pub solid: Solid,
-    /// Distance, negative inside [m].
+    /// Distance, negative inside \[m].
     pub distance: f64,
-    /// The nearest point of the outline [m].
+    /// The nearest point of the outline \[m].
     pub point: Vector64,
     /// Outward normal there, of length 1.
     pub normal: Vector64,
@@ -128,7 +128,7 @@ impl Solver {
         self.world.parts.rigid.as_ref().map_or_else(Vec::new, |rigid| rigid.bodies.interpolated(part))
     }
 
-    /// Ids of the particles in a box [m], in ascending order, without the samples of bodies.
+    /// Ids of the particles in a box \[m], in ascending order, without the samples of bodies.
     pub fn particles_in(&self, low: Vector64, high: Vector64) -> Vec<u32> {
         let inside = |row: &usize| {
             let place = wide(self.positions()[*row]);
@@ -187,12 +187,12 @@ impl<'a> Query<'a> {
         self.ray_cast_all(from, to).into_iter().next()
     }
 
-    /// The solids that hold a point [m].
+    /// The solids that hold a point \[m].
     pub fn at(self, point: Vector64) -> Vec<Solid> {
         self.solids().filter(|(_, outline)| outline.nearest(point).distance <= 0.0).map(|(solid, _)| solid).collect()
     }
 
-    /// The solids that overlap a box [m].
+    /// The solids that overlap a box \[m].
     pub fn in_box(self, low: Vector64, high: Vector64) -> Vec<Solid> {
         let area = box_outline(low, high);
         self.solids().filter(|(_, outline)| outline.overlaps(&area)).map(|(solid, _)| solid).collect()
@@ -205,7 +205,7 @@ impl<'a> Query<'a> {
         self.solids().filter(other).map(|(solid, _)| solid).collect()
     }
 
-    /// The solid whose outline is nearest to a point, no farther than `within` [m]; one that holds the point counts as
+    /// The solid whose outline is nearest to a point, no farther than `within` \[m]; one that holds the point counts as
     /// nearest.
     ///
     /// ```

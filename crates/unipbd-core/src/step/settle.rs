@@ -49,7 +49,7 @@ impl World {
         (PROJECTIONS_PER_LAYER * layers * (NARROW / width).min(1.0)).max(PROJECTIONS) as u32
     }
 
-    /// Runs one projection and returns how far it moved any particle [m].
+    /// Runs one projection and returns how far it moved any particle \[m].
     fn relax_once(&mut self) -> f64 {
         start_projection(&mut self.parts.particles, self.parts.parallelism);
         self.find_neighbors_if_listed();
@@ -90,7 +90,7 @@ fn take_carried(particles: &mut Particles) -> Vec<Vector> {
 }
 
 /// Keeps a fraction of the displacement of a projection for the next one, if its push has the same direction. Returns
-/// the largest displacement [m].
+/// the largest displacement \[m].
 fn carry_momentum(particles: &mut Particles, carried: &[Vector]) -> f64 {
     let mut farthest: Real = 0.0;
     for ((displacement, phase), carried) in particles.displacement.iter_mut().zip(&particles.phase).zip(carried) {

@@ -198,7 +198,7 @@ impl Solver {
         self.world.speed_limit()
     }
 
-    /// The radius within which particles act on each other [m].
+    /// The radius within which particles act on each other \[m].
     pub(crate) fn reach(&self) -> f64 {
         f64::from(self.world.parts.neighbors.radius())
     }

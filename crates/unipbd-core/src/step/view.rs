@@ -16,7 +16,7 @@ impl<'a> SubstepView<'a> {
         SubstepView { world }
     }
 
-    /// Length of the substep [s].
+    /// Length of the substep \[s].
     pub fn dt(&self) -> f64 {
         self.world.clock.dt
     }
@@ -68,7 +68,7 @@ impl<'a> SubstepView<'a> {
         self.all_bodies().velocity(body)
     }
 
-    /// Applies a force [N] and a torque about the centre of mass [N m] to a body in this substep. Only a
+    /// Applies a force \[N] and a torque about the centre of mass [N m] to a body in this substep. Only a
     /// dynamic body is moved.
     ///
     /// # Panics
@@ -79,7 +79,7 @@ impl<'a> SubstepView<'a> {
         self.all_bodies_mut().accelerate(body, force, torque, dt);
     }
 
-    /// Applies a force [N] at a point of the world [m] to a body in this substep. Only a dynamic body is moved.
+    /// Applies a force \[N] at a point of the world \[m] to a body in this substep. Only a dynamic body is moved.
     ///
     /// # Panics
     /// If there is no such body, or force or point are not finite.

@@ -145,7 +145,7 @@ pub(crate) struct World {
     pub(super) hooked: bool,
     /// Impulses on the measured walls in the frame so far [kg m/s].
     pub(super) wall_impulses: Vec<Vector64>,
-    /// Mean forces on the measured walls in the last frame [N].
+    /// Mean forces on the measured walls in the last frame \[N].
     pub(super) wall_forces: Vec<Vector64>,
     /// Whether a frame was run since the build or the last restore: only then are the forces on walls known.
     pub(super) loads_known: bool,

@@ -15,15 +15,15 @@ const STEEPER: f64 = 0.25;
 /// How walls that uphold the lowest row of a liquid see distances: see [`Coverage::upholding`].
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Stretch {
-    /// Distance that stays [m].
+    /// Distance that stays \[m].
     kept: f64,
-    /// From there to the kernel radius [m].
+    /// From there to the kernel radius \[m].
     reach: f64,
     strength: f64,
 }
 
 impl Stretch {
-    /// For a kernel of this radius and a liquid of this spacing, if there is one to be upheld [m].
+    /// For a kernel of this radius and a liquid of this spacing, if there is one to be upheld \[m].
     pub fn new(radius: f64, upheld: Option<f64>) -> Stretch {
         let kept = 0.5 * upheld.unwrap_or(0.0);
         Stretch { kept, reach: radius - kept, strength: if upheld.is_some() { STEEPER } else { 0.0 } }
@@ -114,7 +114,7 @@ impl Coverage {
         }
     }
 
-    /// Kernel radius [m].
+    /// Kernel radius \[m].
     pub fn radius(&self) -> Real {
         self.radius
     }

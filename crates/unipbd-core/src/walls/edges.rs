@@ -40,7 +40,7 @@ pub(super) struct Flow {
 }
 
 impl EdgeTables {
-    /// Tables for this kernel; for walls that uphold the lowest row of a liquid of this spacing, if there is one [m].
+    /// Tables for this kernel; for walls that uphold the lowest row of a liquid of this spacing, if there is one \[m].
     pub fn new<K: Shape>(kernel: &Kernel<K>, upheld: Option<f64>) -> Self {
         let radius = f64::from(kernel.radius());
         let within = within(kernel);
@@ -60,7 +60,7 @@ impl EdgeTables {
         EdgeTables { radius: real(radius), scale: real(1.0 / step), stretch, nodes }
     }
 
-    /// Kernel radius [m].
+    /// Kernel radius \[m].
     pub fn radius(&self) -> Real {
         self.radius
     }

@@ -83,7 +83,7 @@ fn averaged_contacts_keep_linear_and_angular_momentum() {
     assert!(drift < 1e-12 && turned < 0.02 && kept < 1.0);
 }
 
-/// How far the top of a stack of boxes, each a little out of line, comes from where it was put in 10 s [m].
+/// How far the top of a stack of boxes, each a little out of line, comes from where it was put in 10 s \[m].
 fn lean(boxes: u32, substeps: u32, mut world: World) -> f64 {
     world.substeps = substeps;
     for k in 0..boxes {

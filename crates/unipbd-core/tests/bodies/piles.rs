@@ -4,7 +4,7 @@ use unipbd_core::rigid::contact::ContactSettings;
 use unipbd_core::rigid::{BodySpec, MassSpec, Surface};
 use unipbd_core::shapes::Shape;
 
-/// Boxes on each other, sideways out of line by up to `offset` [m], `gap` apart [m].
+/// Boxes on each other, sideways out of line by up to `offset` \[m], `gap` apart \[m].
 fn stack(height: u32, offset: f64, gap: f64) -> World {
     let mut world = World::new(&[floor(Surface::with_friction(0.5))]);
     for k in 0..height {

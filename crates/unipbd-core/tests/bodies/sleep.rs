@@ -9,7 +9,7 @@ fn heap(settings: ContactSettings) -> World {
     lifted_heap(settings, 0.0)
 }
 
-/// The same, falling this much deeper [m].
+/// The same, falling this much deeper \[m].
 fn lifted_heap(settings: ContactSettings, lift: f64) -> World {
     let mut world = World::with_settings(&Wall::tank(at(0.0, 0.0), at(8.0, 40.0), Surface::default()), settings);
     for k in 0..120u32 {

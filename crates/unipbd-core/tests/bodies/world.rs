@@ -111,7 +111,7 @@ impl World {
         fastest
     }
 
-    /// Deepest overlap of any contact [m].
+    /// Deepest overlap of any contact \[m].
     pub fn penetration(&self) -> f64 {
         self.contacts.points().map(|point| -point.gap).fold(0.0, f64::max)
     }

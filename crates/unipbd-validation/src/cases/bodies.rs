@@ -265,7 +265,7 @@ fn granular(trial: &Trial) -> Result<Measured, Failure> {
     Ok((figures, run.cost))
 }
 
-/// Where the deposit ends: the 98th percentile of the right edges, so that strays do not count [m].
+/// Where the deposit ends: the 98th percentile of the right edges, so that strays do not count \[m].
 fn extent(solver: &Solver, radius: f64) -> f64 {
     let mut edges: Vec<f64> = solver.bodies().iter().map(|body| body.position.x + radius).collect();
     edges.sort_by(f64::total_cmp);

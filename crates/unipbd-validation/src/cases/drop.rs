@@ -118,7 +118,7 @@ fn oscillating(trial: &Trial) -> Result<Measured, Failure> {
     Ok((figures, run.cost))
 }
 
-/// Energy in the central field of strength 1 s^-2 [J].
+/// Energy in the central field of strength 1 s^-2 \[J].
 fn field_energy(solver: &Solver) -> f64 {
     let mass = 1000.0 * PI / solver.positions().len() as f64;
     0.5 * mass * points(solver).map(Vector64::length_squared).sum::<f64>()
@@ -130,7 +130,7 @@ fn strain_rate(solver: &Solver) -> f64 {
     moment / points(solver).map(Vector64::length_squared).sum::<f64>()
 }
 
-/// Half-axes from the second moments: of an ellipse of uniform density they are 2 sqrt(<x^2>) [m].
+/// Half-axes from the second moments: of an ellipse of uniform density they are 2 sqrt(<x^2>) \[m].
 fn axes(run: &Runner) -> Vector64 {
     let count = run.solver.positions().len() as f64;
     let squares = points(&run.solver).fold(Vector64::ZERO, |sum, x| sum + x * x) / count;

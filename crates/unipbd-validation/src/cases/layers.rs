@@ -98,7 +98,7 @@ pub const RAYLEIGH_TAYLOR: Case = Case {
     run: rayleigh_taylor,
 };
 
-/// Amplitude of the start [spacings].
+/// Amplitude of the start \[spacings].
 const START: f64 = 2.0;
 /// Growth is measured over this many times of growth, while the wave is shallow.
 const PHASE: f64 = 1.5;
@@ -131,7 +131,7 @@ fn rayleigh_taylor(trial: &Trial) -> Result<Measured, Failure> {
     Ok((figures, run.cost))
 }
 
-/// Amplitude of the interface, from the lower liquid alone [m].
+/// Amplitude of the interface, from the lower liquid alone \[m].
 fn amplitude(solver: &Solver, k: f64, width: f64) -> f64 {
     points_of(solver, 0).map(|x| (k * x.x).cos()).sum::<f64>() * SPACING * SPACING * 2.0 / width
 }

@@ -77,7 +77,7 @@ fn column(trial: &Trial) -> Result<Measured, Failure> {
     Ok((figures, run.cost))
 }
 
-/// Force of the water down on the floor of the tank [N].
+/// Force of the water down on the floor of the tank \[N].
 pub(super) fn floor_force(solver: &Solver) -> f64 {
     solver.wall_forces().iter().filter(|wall| wall.name.ends_with("bottom")).map(|wall| -wall.force.y).sum()
 }
@@ -140,13 +140,13 @@ fn dam_break(trial: &Trial) -> Result<Measured, Failure> {
     Ok((figures, run.cost))
 }
 
-/// Right edge of the water that still hangs together [m].
+/// Right edge of the water that still hangs together \[m].
 fn front_of(solver: &Solver) -> f64 {
     let held = points(solver).zip(solver.density_errors()).filter(|(_, error)| **error > -0.6);
     held.map(|(x, _)| x.x).fold(0.0, f64::max) + 0.5 * SPACING
 }
 
-/// Height of the water in the two spacings beside the left wall [m].
+/// Height of the water in the two spacings beside the left wall \[m].
 fn wall_height(solver: &Solver) -> f64 {
     points(solver).filter(|x| x.x < 2.0 * SPACING).map(|x| x.y).fold(0.0, f64::max) + 0.5 * SPACING
 }

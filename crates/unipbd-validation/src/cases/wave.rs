@@ -60,7 +60,7 @@ fn standing_wave(trial: &Trial) -> Result<Measured, Failure> {
     Ok((figures, run.cost))
 }
 
-/// Amplitude of the fundamental: the sum of V cos(k x) is the integral of eta cos(k x) [m].
+/// Amplitude of the fundamental: the sum of V cos(k x) is the integral of eta cos(k x) \[m].
 fn amplitude(solver: &Solver, k: f64, length: f64) -> f64 {
     points(solver).map(|x| (k * x.x).cos()).sum::<f64>() * SPACING * SPACING * 2.0 / length
 }

@@ -8,7 +8,7 @@ use crate::runner::energy;
 
 /// Energy may grow by this part of that of the start.
 pub const GAIN: f64 = 0.005;
-/// Rest distance of all maps [m]; frames take 1/60 s.
+/// Rest distance of all maps \[m]; frames take 1/60 s.
 const SPACING: f64 = 0.1;
 
 /// What a run came to.

@@ -18,7 +18,7 @@ const SPACING: f64 = 0.1;
 pub struct Quiet {
     /// Steps counted.
     pub steps: u64,
-    /// Largest way of the centre of mass from where it was at rest [spacings].
+    /// Largest way of the centre of mass from where it was at rest \[spacings].
     pub drift: f64,
     /// Largest rise of the energy over that at rest, over the weight times the depth.
     pub energy_rise: f64,
@@ -26,7 +26,7 @@ pub struct Quiet {
     pub restlessness: f64,
     /// Largest density error at the end.
     pub density_error: f64,
-    /// Distance of the centre of mass from that of a pool which was let sleep [spacings].
+    /// Distance of the centre of mass from that of a pool which was let sleep \[spacings].
     pub slept: f64,
 }
 
@@ -84,12 +84,12 @@ fn center(solver: &Solver) -> unipbd_core::Vector64 {
     points(solver).sum::<unipbd_core::Vector64>() / solver.positions().len() as f64
 }
 
-/// Mass of all particles, which have the same [kg].
+/// Mass of all particles, which have the same \[kg].
 fn mass(solver: &Solver) -> f64 {
     1000.0 * SPACING * SPACING * solver.positions().len() as f64
 }
 
-/// Kinetic and potential energy [J].
+/// Kinetic and potential energy \[J].
 fn energy(solver: &Solver) -> f64 {
     let particle = mass(solver) / solver.positions().len() as f64;
     let kinetic = velocities(solver).map(|velocity| 0.5 * velocity.length_squared()).sum::<f64>();

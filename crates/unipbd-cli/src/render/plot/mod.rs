@@ -25,7 +25,7 @@ pub struct Curve {
     pub quantity: String,
     /// Unit; empty for counts, `1` for fractions.
     pub unit: String,
-    /// Time [s] and value; where a value is not a number, the line has a gap.
+    /// Time \[s] and value; where a value is not a number, the line has a gap.
     pub points: Vec<[f64; 2]>,
 }
 
@@ -73,7 +73,7 @@ struct Plot<'a> {
     panels: Vec<Panel<'a>>,
     theme: Theme,
     width: f32,
-    /// First and last time [s].
+    /// First and last time \[s].
     times: [f64; 2],
 }
 

@@ -12,9 +12,9 @@ const REACH: f64 = 3.0;
 
 /// The particles of all frames so far.
 pub(super) struct Motion {
-    /// Centre of the region [m].
+    /// Centre of the region \[m].
     pub middle: [f64; 2],
-    /// Step of positions [m].
+    /// Step of positions \[m].
     pub quantum: f64,
     /// Ids, materials and places of the last frame, and where each particle was in the frame before.
     last: Option<Places>,

@@ -7,7 +7,7 @@ use crate::scene::{GradientPoint, MaterialRef, Scene};
 /// Settings of the density group.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DensitySettings {
-    /// Particle spacing dx [m].
+    /// Particle spacing dx \[m].
     pub spacing: f64,
     /// Weight of one neighbour: its volume, scaled so that the rest lattice reads 1 [m^2].
     pub volume: Real,
@@ -26,9 +26,9 @@ pub struct DensitySettings {
     pub upheld: bool,
     /// Pair repulsion, where there is gas.
     pub repulsion: Option<Reach>,
-    /// Farthest that a particle is shifted in one substep, where any material is [m].
+    /// Farthest that a particle is shifted in one substep, where any material is \[m].
     pub farthest_shift: Option<Real>,
-    /// Where the fastest goes less far in a substep, all are shifted less [m].
+    /// Where the fastest goes less far in a substep, all are shifted less \[m].
     pub whole_shift: Real,
     /// Part of each displacement that velocities follow; the rest moves particles alone.
     pub velocity_share: Real,
@@ -72,10 +72,10 @@ const REPULSION_REACH: f64 = 0.8;
 const REPULSION_FULL: f64 = 0.6;
 /// ...by this part of their overlap per substep.
 const GAS_REPULSION: f64 = 0.8;
-/// No particle is shifted farther than this in one substep [spacings].
+/// No particle is shifted farther than this in one substep \[spacings].
 const FARTHEST_SHIFT: f64 = 0.05;
 /// Where the fastest goes less far in a substep than this, all are shifted in proportion: an arrangement is
-/// strained by the way it goes, however many substeps that takes, and what rests is left alone [spacings].
+/// strained by the way it goes, however many substeps that takes, and what rests is left alone \[spacings].
 const WHOLE_SHIFT: f64 = 0.15;
 /// Where the pressure grid carries the pressure, velocities follow this part of a displacement: what is left to the
 /// particles is disorder. Followed wholly, a drop drawn out loses 5 % of its energy; not at all, a dam break gains
@@ -178,7 +178,7 @@ fn power_of_two_below(value: f64) -> f64 {
     if value.is_finite() { f64::from_bits(value.to_bits() & !MANTISSA) } else { 1.0 }
 }
 
-/// The smallest mass of a particle of these materials [kg].
+/// The smallest mass of a particle of these materials \[kg].
 fn lightest_mass(scene: &Scene, counts: impl Fn(&MaterialRef<'_>) -> bool) -> f64 {
     let masses = scene.materials().filter(counts).map(|material| material.particle_mass(scene.spacing));
     masses.fold(f64::INFINITY, f64::min)
@@ -189,7 +189,7 @@ fn repulsion_reach(spacing: f64) -> Reach {
     Reach { full: real(REPULSION_FULL * spacing), none: real(REPULSION_REACH * spacing) }
 }
 
-/// The mass of every dense particle, if it is the same for all and none is kinematic [kg].
+/// The mass of every dense particle, if it is the same for all and none is kinematic \[kg].
 fn uniform_mass(scene: &Scene) -> Option<f64> {
     let dense = scene.materials().filter(|material| material.phase().is_dense());
     let mut masses = dense.map(|material| material.particle_mass(scene.spacing));

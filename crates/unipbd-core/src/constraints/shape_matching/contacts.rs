@@ -13,7 +13,7 @@ use crate::phase::Phase;
 use crate::rigid::Surface;
 use crate::scene::OVER_RELAXATION;
 
-/// Samples with less signed distance than this lie at the surface [spacings].
+/// Samples with less signed distance than this lie at the surface \[spacings].
 const SURFACE: f64 = 0.75;
 /// Part of an old overlap that a round takes out.
 const OLD_PART: f64 = 0.05;
@@ -31,7 +31,7 @@ pub(super) struct Touch {
     wall: Option<u16>,
     /// Unit normal, towards the first.
     normal: Vector64,
-    /// Overlap where the substep began [m].
+    /// Overlap where the substep began \[m].
     old: f64,
     surface: Surface,
 }
@@ -191,7 +191,7 @@ impl ShapeMatching {
         stiff * whole * shares + (1.0 - stiff) * alone
     }
 
-    /// Displacement of the first sample relative to the second in this substep [m].
+    /// Displacement of the first sample relative to the second in this substep \[m].
     fn relative(&self, touch: &Touch, now: Substep<'_>) -> Vector64 {
         let moved = |(m, s): Sample| self.places[m][s] - wide(now.particles.starts()[self.rows[m][s] as usize]);
         moved(touch.a) - touch.b.map_or(Vector64::ZERO, moved)

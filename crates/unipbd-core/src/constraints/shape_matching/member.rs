@@ -5,7 +5,7 @@ use crate::rigid::{CollisionFilter, Elasticity, Surface};
 use crate::shapes::{Nearest, Shape};
 use std::ops::Range;
 
-/// The time in which a body loses the part of its wobble that is its damping [s].
+/// The time in which a body loses the part of its wobble that is its damping \[s].
 const DAMPING_TIME: f64 = 1.0 / 60.0;
 
 /// Stiffness times dt^2 over mass up to which springs act as at the start of a substep: beyond 1 that is unstable.
@@ -15,7 +15,7 @@ const STIFFEST: f64 = 0.8;
 pub struct Member {
     /// Id of its first sample.
     first: u32,
-    /// Samples in body coordinates [m]; their mean is the centre of mass.
+    /// Samples in body coordinates \[m]; their mean is the centre of mass.
     rest: Vec<Vector64>,
     /// Signed distance to the outline and its gradient, at each sample.
     pub(super) distances: Vec<Nearest>,
@@ -35,7 +35,7 @@ pub struct Member {
 /// The place of a shape that fits particles best.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Fit {
-    /// Centre of mass [m].
+    /// Centre of mass \[m].
     pub center: Vector64,
     /// Cosine and sine of the angle.
     pub rotation: Vector64,
@@ -79,7 +79,7 @@ impl Member {
         Fit { center, rotation: if rotation == Vector64::ZERO { Vector64::X } else { rotation } }
     }
 
-    /// Stiffness of a sample's spring to the shape times dt^2 over its mass, in a substep of this length [s]; infinite
+    /// Stiffness of a sample's spring to the shape times dt^2 over its mass, in a substep of this length \[s]; infinite
     /// for a rigid body, or where a pose moves it.
     pub(super) fn stiffness(&self, dt: f64) -> f64 {
         match self.softness {
@@ -88,18 +88,18 @@ impl Member {
         }
     }
 
-    /// Part of the way to the fit that a free sample goes in a substep of this length [s].
+    /// Part of the way to the fit that a free sample goes in a substep of this length \[s].
     pub(super) fn part(&self, dt: f64) -> f64 {
         let stiffness = self.stiffness(dt);
         if stiffness.is_finite() { stiffness / (1.0 + stiffness) } else { 1.0 }
     }
 
-    /// Part of its wobble that it loses in a substep of this length [s].
+    /// Part of its wobble that it loses in a substep of this length \[s].
     pub(super) fn damped(&self, dt: f64) -> f64 {
         1.0 - libm::pow(1.0 - self.damping, dt / DAMPING_TIME)
     }
 
-    /// Displaces the samples of a soft body as their springs do in a substep of this length [s] where nothing else moves
+    /// Displaces the samples of a soft body as their springs do in a substep of this length \[s] where nothing else moves
     /// them from `starts`: what the iterations start from, so that at rest a body lies as its springs balance its weight,
     /// whatever the length of the substep.
     pub(super) fn begin(&self, places: &mut [Vector64], starts: &[Vector64], pulled: &mut [Vector64], dt: f64) {

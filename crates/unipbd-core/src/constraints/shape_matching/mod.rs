@@ -24,7 +24,7 @@ const ROUNDS: usize = 2;
 pub struct ShapeMatching {
     members: Vec<Member>,
     spacing: f64,
-    /// How far the springs of the samples have moved them in this substep, member by member [m].
+    /// How far the springs of the samples have moved them in this substep, member by member \[m].
     pulled: Vec<Vec<Vector64>>,
     /// Whether the substep has only begun.
     begun: bool,
@@ -32,7 +32,7 @@ pub struct ShapeMatching {
     rule: FrictionRule,
     /// Rows of the samples, member by member.
     rows: Vec<Vec<u32>>,
-    /// Where the samples are in this iteration [m].
+    /// Where the samples are in this iteration \[m].
     places: Vec<Vec<Vector64>>,
     fits: Vec<Fit>,
     touches: Vec<Touch>,
@@ -166,7 +166,7 @@ impl ConstraintGroup for ShapeMatching {
     }
 }
 
-/// Radius at which samples and walls touch [m].
+/// Radius at which samples and walls touch \[m].
 fn radius(spacing: f64) -> Real {
     (0.5 * spacing) as Real
 }

@@ -14,7 +14,7 @@ use crate::simd::wide::WIDE;
 pub(super) type Lane = [Real; WIDE];
 pub(super) type Exact = [f64; WIDE];
 
-/// Gap of a point that is not there [m].
+/// Gap of a point that is not there \[m].
 const FAR: f64 = 1e12;
 
 /// Four contacts; a lane without one is all zero, and its bodies are the idle one.
@@ -23,7 +23,7 @@ pub(super) struct Block {
     /// Rows of the motion of both bodies; walls and free lanes have the idle row behind all bodies.
     pub bodies: [[u32; WIDE]; 2],
     pub normal: [Lane; 2],
-    /// By point: gap [m], and moments about both centres of mass of unit impulses along normal and tangent [m].
+    /// By point: gap \[m], and moments about both centres of mass of unit impulses along normal and tangent \[m].
     pub gap: [Lane; 2],
     pub normal_a: [Lane; 2],
     pub normal_b: [Lane; 2],
@@ -32,15 +32,15 @@ pub(super) struct Block {
     /// Responses to normal impulses, and the inverse of their matrix: both points, and across.
     pub response: [Lane; 3],
     pub inverse: [Lane; 3],
-    /// By point: effective mass along the normal alone, and along the tangent [kg].
+    /// By point: effective mass along the normal alone, and along the tangent \[kg].
     pub alone: [Lane; 2],
     pub tangent: [Lane; 2],
     pub friction: Lane,
     /// 1 for two points with friction.
     pub turns: Lane,
-    /// Way of moving surfaces along the tangent [m].
+    /// Way of moving surfaces along the tangent \[m].
     pub belt: Lane,
-    /// Size of the smaller body [m].
+    /// Size of the smaller body \[m].
     pub size: Lane,
     /// Whether a lane resists rolling, the arms, and the effective masses.
     pub rolls: bool,

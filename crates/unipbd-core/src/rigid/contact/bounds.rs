@@ -29,7 +29,7 @@ impl Bounds {
             && other.low.y <= self.high.y
     }
 
-    /// Separation of two boxes along the axis of largest separation; negative if they overlap [m].
+    /// Separation of two boxes along the axis of largest separation; negative if they overlap \[m].
     pub fn distance(&self, other: &Bounds) -> f64 {
         (self.low - other.high).max(other.low - self.high).max_element()
     }

@@ -83,7 +83,7 @@ fn disc_on_polygon(a: &PieceView, b: &PieceView, margin: f64) -> Option<Touch> {
 struct Axis {
     of_first: bool,
     edge: usize,
-    /// Separation of the other polygon from the face [m].
+    /// Separation of the other polygon from the face \[m].
     apart: f64,
 }
 

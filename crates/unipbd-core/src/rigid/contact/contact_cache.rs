@@ -8,12 +8,12 @@ use crate::rigid::Surface;
 /// One contact point in the sweeps.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Point {
-    /// Distance of the surfaces at the start of the substep [m].
+    /// Distance of the surfaces at the start of the substep \[m].
     pub gap: f64,
     /// Impulses of this substep, the initial values of the next.
     pub normal_impulse: f64,
     pub tangent_impulse: f64,
-    /// Moments about both centres of mass of unit impulses along normal and tangent [m].
+    /// Moments about both centres of mass of unit impulses along normal and tangent \[m].
     pub normal_a: f64,
     pub normal_b: f64,
     pub tangent_a: f64,
@@ -49,9 +49,9 @@ pub(crate) struct ContactCache {
     /// The solid that the normal is fixed to, and the normal in its coordinates.
     pub(super) reference: Reference,
     pub(super) normal: Vector64,
-    /// Radii of the discs, 0 for polygons [m].
+    /// Radii of the discs, 0 for polygons \[m].
     pub(super) radii: [f64; 2],
-    /// The points of each body, in its coordinates [m].
+    /// The points of each body, in its coordinates \[m].
     pub(super) anchors: [(Vector64, Vector64); 2],
     /// The vertices that identify each point.
     pub(super) features: [u32; 2],
@@ -68,7 +68,7 @@ pub(crate) struct ContactCache {
 pub(crate) struct Rebound {
     /// Normal velocity after it [m/s].
     pub velocity: f64,
-    /// Distance flown after it in the same substep [m].
+    /// Distance flown after it in the same substep \[m].
     pub flown: f64,
     /// Impulses along normal and tangent, in addition to those of the substep [kg m/s].
     pub normal: f64,

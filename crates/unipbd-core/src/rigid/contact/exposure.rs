@@ -11,13 +11,13 @@ pub(super) struct Solid<'a> {
     pub vertices: &'a [Vector64],
     pub normals: &'a [Vector64],
     pub bounds: Bounds,
-    /// Size of the solid [m].
+    /// Size of the solid \[m].
     pub size: f64,
     /// Body and wall; pieces of one solid do not cover each other's outline.
     pub owner: (u32, u32),
 }
 
-/// The covered parts of the edges of each solid: edge, and the distances from its start [m].
+/// The covered parts of the edges of each solid: edge, and the distances from its start \[m].
 pub(super) fn covered(solids: &[Solid], planes: &[(Vector64, Vector64)]) -> Vec<Vec<(usize, [f64; 2])>> {
     let mut order: Vec<usize> = (0..solids.len()).collect();
     order.sort_by(|&i, &j| solids[i].bounds.low.x.total_cmp(&solids[j].bounds.low.x));

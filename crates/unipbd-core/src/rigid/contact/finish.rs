@@ -123,7 +123,7 @@ impl Contacts {
         );
     }
 
-    /// Twice the gravity times the square of the substep [m].
+    /// Twice the gravity times the square of the substep \[m].
     fn fall(&self) -> f64 {
         2.0 * self.gravity * self.dt * self.dt
     }

@@ -7,7 +7,7 @@ use crate::rigid::Bodies;
 /// The coordinates of a body.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Frame {
-    /// Centre of mass [m].
+    /// Centre of mass \[m].
     pub position: Vector64,
     angle: f64,
     /// Cosine and sine of the angle.

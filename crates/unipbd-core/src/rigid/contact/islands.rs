@@ -14,7 +14,7 @@ pub struct SleepSettings {
     /// Speed of the fastest point of a body, |v| + |w| R, below which it may be at rest, relative to
     /// sqrt(gravity x size of the body): without gravity nothing sleeps.
     pub speed: f64,
-    /// Rest time of a whole island before it sleeps [s].
+    /// Rest time of a whole island before it sleeps \[s].
     pub delay: f64,
 }
 
@@ -40,11 +40,11 @@ const NOISE: f64 = 1e-4;
 /// Rest times of bodies, and the islands of sleeping bodies.
 #[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Islands {
-    /// Rest time of each body [s].
+    /// Rest time of each body \[s].
     rest: Vec<f64>,
     /// How far its velocity has carried it since its rest began.
     drifts: Vec<Twist>,
-    /// Its last speed [m/s], and the time for which it has grown [s].
+    /// Its last speed [m/s], and the time for which it has grown \[s].
     speeds: Vec<f64>,
     rising: Vec<f64>,
     /// The island of each sleeping body.

@@ -9,12 +9,12 @@ pub enum JointKind {
     Hinge {
         /// Optional motor for the relative angular velocity.
         motor: Option<Motor>,
-        /// Range of the angle of the first body minus that of the second [rad].
+        /// Range of the angle of the first body minus that of the second \[rad].
         limits: Option<Limits>,
     },
     /// The distance of the anchors is constant.
     Distance {
-        /// Rest distance [m].
+        /// Rest distance \[m].
         length: f64,
         /// Inverse stiffness [m/N]; 0 is rigid.
         compliance: f64,
@@ -25,26 +25,26 @@ pub enum JointKind {
     },
     /// The anchors coincide, and the bodies keep their angle.
     Weld {
-        /// Angle of the first body minus that of the second [rad].
+        /// Angle of the first body minus that of the second \[rad].
         angle: f64,
     },
     /// The first anchor stays on a line through the second, and the bodies keep their angle.
     Slider {
         /// Direction of the line, of length 1, in the coordinates of the second body, or of the world.
         axis: Vector64,
-        /// Angle of the first body minus that of the second [rad].
+        /// Angle of the first body minus that of the second \[rad].
         angle: f64,
-        /// Optional motor along the line, for the speed of the first anchor away from the second [m/s], [N].
+        /// Optional motor along the line, for the speed of the first anchor away from the second [m/s], \[N].
         motor: Option<Motor>,
-        /// Range of the place on the line [m].
+        /// Range of the place on the line \[m].
         limits: Option<Limits>,
     },
     /// A rope over two fixed wheels without mass: distance of the first anchor from the first wheel plus `ratio` times
     /// that of the second anchor from the second never exceeds a length.
     Pulley {
-        /// Places of the wheels in the world [m].
+        /// Places of the wheels in the world \[m].
         wheels: [Vector64; 2],
-        /// Length of the rope beside the stretch between the wheels [m].
+        /// Length of the rope beside the stretch between the wheels \[m].
         length: f64,
         /// Purchase: what the second side counts for.
         ratio: f64,
@@ -65,7 +65,7 @@ pub enum DistanceRule {
 pub struct Motor {
     /// Target velocity of the first body relative to the second [rad/s], [m/s].
     pub speed: f64,
-    /// Maximum torque [N m], or force [N].
+    /// Maximum torque [N m], or force \[N].
     pub max_torque: f64,
 }
 
@@ -92,9 +92,9 @@ pub struct Joint {
     pub body: u32,
     /// Second body; `None` is the world.
     pub other: Option<u32>,
-    /// Anchor on the first body [m].
+    /// Anchor on the first body \[m].
     pub anchor: Vector64,
-    /// Anchor on the second body, or in the world [m].
+    /// Anchor on the second body, or in the world \[m].
     pub other_anchor: Vector64,
     /// The constraint.
     pub kind: JointKind,
@@ -113,7 +113,7 @@ impl Joint {
 /// Loads from which on a joint breaks: means over a frame.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub struct Strength {
-    /// Largest force [N].
+    /// Largest force \[N].
     pub force: f64,
     /// Largest torque about the anchor [N m].
     pub torque: f64,
@@ -131,7 +131,7 @@ pub struct JointState {
     pub name: String,
     /// The joint itself.
     pub joint: Joint,
-    /// Force on the first body at its anchor over the last frame, mean [N].
+    /// Force on the first body at its anchor over the last frame, mean \[N].
     pub force: Vector64,
     /// Torque on the first body about its anchor over the last frame, mean [N m].
     pub torque: f64,

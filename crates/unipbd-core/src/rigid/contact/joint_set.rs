@@ -57,7 +57,7 @@ impl Contacts {
         }
     }
 
-    /// Where the anchor of a joint in the world is at the start of a substep, and its way in it [m]; `None` where
+    /// Where the anchor of a joint in the world is at the start of a substep, and its way in it \[m]; `None` where
     /// nothing holds it: then the joint does not act.
     pub(crate) fn carry(&mut self, index: usize, held: Option<(Vector64, Vector64)>, bodies: &mut Bodies) {
         let linked = &mut self.joints[index];
@@ -104,7 +104,7 @@ impl Contacts {
         self.joints.len()
     }
 
-    /// The joints that act, with the force on the first body [N] and the torque about its anchor [N m] in the last
+    /// The joints that act, with the force on the first body \[N] and the torque about its anchor [N m] in the last
     /// substep.
     pub fn joint_loads(&self) -> impl Iterator<Item = (Joint, Vector64, f64)> + '_ {
         let square = self.dt * self.dt;

@@ -15,7 +15,7 @@ pub(super) enum Rule {
     /// The same, from the last block to the first.
     SolveBackward,
     /// Moves bodies out of each other, without a trace in the impulses; with twice the gravity times the square of the
-    /// substep [m].
+    /// substep \[m].
     Separate(Depenetration, f64),
 }
 

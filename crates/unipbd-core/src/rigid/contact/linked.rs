@@ -24,13 +24,13 @@ pub(crate) struct Linked {
     /// Arms of the anchors at the start of the substep (point of application of impulses) and at its middle.
     arms: (Vector64, Vector64),
     middle: (Vector64, Vector64),
-    /// Position of the first body's anchor relative to the second body's anchor, at the start of the substep [m].
+    /// Position of the first body's anchor relative to the second body's anchor, at the start of the substep \[m].
     offset: Vector64,
     split: (InverseMass, InverseMass),
     dt: f64,
     /// Equations of a kind that is solved as a block.
     block: Block,
-    /// Way of an anchor in the world over the substep: a script carries it [m].
+    /// Way of an anchor in the world over the substep: a script carries it \[m].
     pub carried: Vector64,
     pub status: Status,
     pub strength: Strength,
@@ -57,7 +57,7 @@ pub(crate) enum Status {
     Removed,
 }
 
-/// Force [N] and torque [N m] on the first body at its anchor.
+/// Force \[N] and torque [N m] on the first body at its anchor.
 #[derive(Clone, Copy, Debug, Default, PartialEq, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Load {
     pub force: Vector64,

@@ -20,7 +20,7 @@ use crate::rigid::{InverseMass, Twist};
 pub(super) struct EffectiveMass {
     /// Inverse effective mass along the normal, with the split masses [1/kg].
     pub normal: Coupling,
-    /// Effective mass of each point along the tangent [kg].
+    /// Effective mass of each point along the tangent \[kg].
     pub tangent: [f64; 2],
     /// Responses of both bodies to moments [1/(kg m^2)].
     pub turning: (f64, f64),
@@ -28,7 +28,7 @@ pub(super) struct EffectiveMass {
     pub linear: f64,
     /// Coulomb coefficient: static if the sliding speed is low, else kinetic.
     pub friction: f64,
-    /// Way of moving surfaces in the substep, along the tangent [m].
+    /// Way of moving surfaces in the substep, along the tangent \[m].
     pub belt: f64,
 }
 
@@ -46,7 +46,7 @@ pub(crate) struct Contact {
     pub normal: Vector64,
     points: [Point; 2],
     pub(super) effective_mass: EffectiveMass,
-    /// Rolling friction times the rolling radius [m].
+    /// Rolling friction times the rolling radius \[m].
     pub(super) rolling_arm: f64,
     /// Impulse of the rolling resistance [kg m^2].
     pub rolling_impulse: f64,
@@ -167,7 +167,7 @@ impl Contact {
         &mut self.points[..self.count as usize]
     }
 
-    /// From the centre of mass of the first body to its surface at a point [m].
+    /// From the centre of mass of the first body to its surface at a point \[m].
     pub fn arm_a(&self, point: &Point) -> Vector64 {
         self.normal * point.tangent_a - self.tangent() * point.normal_a
     }
@@ -181,7 +181,7 @@ impl Contact {
         self.normal.perp()
     }
 
-    /// Least gap left after a motion of the bodies [m].
+    /// Least gap left after a motion of the bodies \[m].
     pub fn gap_after(&self, motion: &[Twist], time: f64) -> f64 {
         let (a, b) = (entry(motion, self.a), entry(motion, self.b));
         let left = |point: &Point| point.gap + (self.opening(point, &a, &b) * time).min(0.0);
@@ -237,7 +237,7 @@ impl Contact {
         push
     }
 
-    /// The push of all impulses of a substep of length `dt` [s], those of a rebound included [N s].
+    /// The push of all impulses of a substep of length `dt` \[s], those of a rebound included [N s].
     pub fn total_push(&self, cache: &ContactCache, dt: f64) -> Push {
         let moment = self.rolling_impulse / dt;
         let mut push = Push { linear: Vector64::ZERO, angular_a: moment, angular_b: moment };
@@ -359,8 +359,8 @@ impl Contact {
         self.rolling_impulse = moment;
     }
 
-    /// The push that removes overlap from the positions; `flown` is the way of each point since its rebound [m], `size`
-    /// the size of the smaller body, and `fall` twice the gravity times the square of the substep [m].
+    /// The push that removes overlap from the positions; `flown` is the way of each point since its rebound \[m], `size`
+    /// the size of the smaller body, and `fall` twice the gravity times the square of the substep \[m].
     pub fn separate(
         &self,
         flown: [f64; 2],

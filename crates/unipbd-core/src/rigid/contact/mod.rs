@@ -130,18 +130,18 @@ pub struct ContactPoint {
     pub other: Option<u32>,
     /// The wall; `None` for a contact of two bodies.
     pub wall: Option<u32>,
-    /// From the centre of mass of the first body to the point [m].
+    /// From the centre of mass of the first body to the point \[m].
     pub arm: Vector64,
-    /// The point, at the poses of the end of the frame [m]; only where [`Solver::contacts`](crate::Solver::contacts) tells
+    /// The point, at the poses of the end of the frame \[m]; only where [`Solver::contacts`](crate::Solver::contacts) tells
     /// it.
     pub position: Vector64,
     /// Unit normal, towards the first body.
     pub normal: Vector64,
-    /// Distance of the surfaces at the start of the last substep, negative when they overlap [m].
+    /// Distance of the surfaces at the start of the last substep, negative when they overlap \[m].
     pub gap: f64,
-    /// Normal force on the first body over the last substep [N].
+    /// Normal force on the first body over the last substep \[N].
     pub normal_force: f64,
-    /// Friction force on the first body, along the normal turned left [N].
+    /// Friction force on the first body, along the normal turned left \[N].
     pub friction_force: f64,
 }
 
@@ -264,12 +264,12 @@ impl Contacts {
         self.dt == 0.0
     }
 
-    /// Force of the bodies on each wall over the last frame, mean [N]; in the order of the walls.
+    /// Force of the bodies on each wall over the last frame, mean \[N]; in the order of the walls.
     pub fn wall_forces(&self) -> &[Vector64] {
         &self.wall_forces
     }
 
-    /// Mean force of the bodies over the last frame on the walls of this name [N].
+    /// Mean force of the bodies over the last frame on the walls of this name \[N].
     pub(crate) fn wall_force(&self, name: &str) -> Vector64 {
         let named = self.wall_names.iter().zip(&self.wall_forces).filter(|(of, _)| *of == name);
         named.map(|(_, force)| *force).sum()

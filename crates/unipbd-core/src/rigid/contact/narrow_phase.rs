@@ -126,7 +126,7 @@ impl NarrowPhase {
         self.reach.restart();
     }
 
-    /// Begins a frame of this length [s].
+    /// Begins a frame of this length \[s].
     pub fn begin_frame(&mut self, frame: f64) {
         self.reach.begin_frame(frame);
     }
@@ -192,7 +192,7 @@ impl NarrowPhase {
         }
     }
 
-    /// Ends a substep of this length [s].
+    /// Ends a substep of this length \[s].
     pub fn pass(&mut self, dt: f64) {
         self.reach.pass(dt);
     }

@@ -16,7 +16,7 @@ pub(super) struct PairContacts<'a> {
     pub pairs: &'a Pairs,
     pub reach: &'a Reach,
     pub frames: &'a Frames,
-    /// Length of the last substep, whose impulses are kept [s].
+    /// Length of the last substep, whose impulses are kept \[s].
     pub dt: f64,
     /// Contacts of the last substep.
     pub last: &'a ContactSet,

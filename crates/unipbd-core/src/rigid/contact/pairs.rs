@@ -23,7 +23,7 @@ pub(super) struct Pair {
     pub kind: Kind,
     pub surface: Surface,
     pub rolling_arm: f64,
-    /// Gap below which contacts are kept, in addition to the gap required by motion [m].
+    /// Gap below which contacts are kept, in addition to the gap required by motion \[m].
     pub near: f64,
 }
 
@@ -264,7 +264,7 @@ impl Pairs {
     }
 }
 
-/// The box that a piece covers on its way, for so many frames, with room around it [m].
+/// The box that a piece covers on its way, for so many frames, with room around it \[m].
 fn swept(bounds: &Bounds, reach: &Reach, body: u32, frames: f64, room: f64) -> Bounds {
     let (way, off) = reach.sweep(body);
     let way = way.linear * frames;

@@ -18,11 +18,11 @@ pub(super) struct Piece {
     pub wall: u32,
     first: u32,
     count: u32,
-    /// Radius of a disc; 0 for a polygon [m].
+    /// Radius of a disc; 0 for a polygon \[m].
     pub radius: f64,
     /// Whether a part of its outline is covered by other solids.
     joined: bool,
-    /// Size of its solid [m].
+    /// Size of its solid \[m].
     pub size: f64,
     pub surface: Surface,
     pub filter: CollisionFilter,
@@ -53,7 +53,7 @@ pub(super) struct HalfPlane {
 pub(super) struct PieceView<'a> {
     pub vertices: &'a [Vector64],
     pub normals: &'a [Vector64],
-    /// The part of each edge that is surface, from the distance to the distance from its start [m].
+    /// The part of each edge that is surface, from the distance to the distance from its start \[m].
     pub exposed: &'a [[f64; 2]],
     /// Whether each vertex is a corner of the surface.
     pub corners: &'a [bool],
@@ -261,7 +261,7 @@ impl Pieces {
         self.bounds[index] = bounds.grown(piece.radius);
     }
 
-    /// First vertex of a piece [m], and its radius.
+    /// First vertex of a piece \[m], and its radius.
     pub fn disc(&self, index: u32) -> (Vector64, f64) {
         let piece = &self.all[index as usize];
         (self.vertices[piece.first as usize], piece.radius)

@@ -10,7 +10,7 @@ use crate::rigid::{Bodies, Pose, Twist};
 
 /// Allowance of a body at rest, relative to its size.
 const LEAST: f64 = 0.01;
-/// Rotation after which the faces of a polygon are searched again [rad].
+/// Rotation after which the faces of a polygon are searched again \[rad].
 const TURN: f64 = 0.15;
 /// Relative motion after which the same contacts are no longer trusted, relative to the size of the body: another
 /// face may be nearer.
@@ -21,9 +21,9 @@ const WAY: f64 = 0.5;
 struct Reference {
     pose: Pose,
     velocity: Twist,
-    /// Time of the search since the start of the frame [s].
+    /// Time of the search since the start of the frame \[s].
     time: f64,
-    /// Way that may differ from the prediction [m].
+    /// Way that may differ from the prediction \[m].
     allowance: f64,
     /// Fastest motion relative to a nearby body [m/s].
     closing: f64,
@@ -35,9 +35,9 @@ pub(super) struct Reach {
     bodies: Vec<Reference>,
     /// Bodies to be searched in this substep.
     pub wanted: Vec<bool>,
-    /// Distance of the outline from the centre of mass that rotation moves: 0 for discs [m].
+    /// Distance of the outline from the centre of mass that rotation moves: 0 for discs \[m].
     levers: Vec<f64>,
-    /// Length of the frame [s], and the time since its start.
+    /// Length of the frame \[s], and the time since its start.
     frame: f64,
     elapsed: f64,
     begun: bool,
@@ -105,12 +105,12 @@ impl Reach {
             || (time > 0.0 && of.closing * (time + dt) > WAY * bodies.sizes[id])
     }
 
-    /// Ends a substep of this length [s].
+    /// Ends a substep of this length \[s].
     pub fn pass(&mut self, dt: f64) {
         self.elapsed += dt;
     }
 
-    /// Time until the end of the frame [s].
+    /// Time until the end of the frame \[s].
     fn ahead(&self) -> f64 {
         self.frame - self.elapsed
     }
@@ -159,13 +159,13 @@ impl Reach {
         (of_a.velocity.linear - of_b.velocity.linear).length() + spin(&of_a, a) + spin(&of_b, b)
     }
 
-    /// Largest distance of two bodies that can touch until the end of the frame [m].
+    /// Largest distance of two bodies that can touch until the end of the frame \[m].
     pub fn margin(&self, (a, b): (u32, u32)) -> f64 {
         let (of_a, of_b) = (entry(&self.bodies, a), entry(&self.bodies, b));
         self.closing(a, b) * self.ahead() + of_a.allowance + of_b.allowance
     }
 
-    /// The predicted motion of a body until the end of the frame, and how far it may be off [m].
+    /// The predicted motion of a body until the end of the frame, and how far it may be off \[m].
     pub fn sweep(&self, body: u32) -> (Twist, f64) {
         let of = &self.bodies[body as usize];
         let turning = of.velocity.angular.abs() * self.levers[body as usize] * self.ahead();

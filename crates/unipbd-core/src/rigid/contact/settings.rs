@@ -62,8 +62,8 @@ impl Default for Depenetration {
 }
 
 impl Depenetration {
-    /// Minus the part of an overlap that a substep removes between bodies of this size [m]. `fall` is twice the
-    /// gravity times the square of the substep [m].
+    /// Minus the part of an overlap that a substep removes between bodies of this size \[m]. `fall` is twice the
+    /// gravity times the square of the substep \[m].
     pub(super) fn lacking(&self, overlap: f64, size: f64, fall: f64) -> f64 {
         let overlap = overlap - self.slop * size;
         if overlap <= 0.0 {

@@ -5,7 +5,7 @@ use crate::math::Vector64;
 /// Parameters of a substep for the search.
 #[derive(Clone, Copy, Default)]
 pub(super) struct StepContext {
-    /// Its length, and that of the substep before, whose impulses are kept; its own, if there was none [s].
+    /// Its length, and that of the substep before, whose impulses are kept; its own, if there was none \[s].
     pub dt: f64,
     pub last_dt: f64,
     /// Gravity [m/s^2].

@@ -19,18 +19,18 @@ pub(super) struct Touch {
     pub reference: Reference,
     /// Unit normal, towards the first piece.
     pub normal: Vector64,
-    /// A vertex of the first piece or a point on its face, without the radius of a disc [m].
+    /// A vertex of the first piece or a point on its face, without the radius of a disc \[m].
     pub on_a: Vector64,
-    /// The same of the second piece [m].
+    /// The same of the second piece \[m].
     pub on_b: Vector64,
-    /// Radii of the discs, 0 for polygons [m].
+    /// Radii of the discs, 0 for polygons \[m].
     pub radii: [f64; 2],
     /// The vertices of the two pieces that identify the point in the next search.
     pub feature: u32,
 }
 
 impl Touch {
-    /// Distance of the surfaces along the normal, negative when they overlap [m].
+    /// Distance of the surfaces along the normal, negative when they overlap \[m].
     pub fn gap(&self) -> f64 {
         (self.on_a - self.on_b).dot(self.normal) - self.radii[0] - self.radii[1]
     }

@@ -6,7 +6,7 @@ use crate::scene::{KeyPath, MaterialRef, Problems, Scene};
 pub(super) struct Checker<'a> {
     pub(super) scene: &'a Scene,
     pub(super) problems: Problems,
-    /// The spacing, unless it is at fault itself [m].
+    /// The spacing, unless it is at fault itself \[m].
     pub(super) spacing: Option<f64>,
     /// The first material of each name, by index.
     pub(super) materials: HashMap<&'a str, MaterialRef<'a>>,

@@ -4,13 +4,13 @@ use super::checker::{Allowed, Checker, entries, rounded};
 use super::settings::FRAME_RATES;
 use crate::scene::KeyPath;
 
-/// Farthest that a force may take a particle from rest in one frame [spacings].
+/// Farthest that a force may take a particle from rest in one frame \[spacings].
 const LEAP: f64 = 1e4;
 /// Strongest gusts [spacings per frame].
 const GALE: f64 = 1e3;
 /// Densities [kg/m^2]: from a thousandth of hydrogen to a thousand times lead, in single precision far from its ends.
 const DENSITIES: (f64, f64) = (1e-6, 1e9);
-/// Masses of particles and bodies [kg].
+/// Masses of particles and bodies \[kg].
 const MASSES: (f64, f64) = (1e-12, 1e15);
 /// Strongest confinement of vorticity, and strongest baroclinic effect: 1 is strong.
 const STRENGTH: f64 = 1e3;

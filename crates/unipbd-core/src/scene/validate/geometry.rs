@@ -33,7 +33,7 @@ impl Axis {
     }
 }
 
-/// The region that the particle centres of a source span at the start [m].
+/// The region that the particle centres of a source span at the start \[m].
 #[derive(Clone, Copy)]
 pub(super) enum Shape {
     Rectangle { min: [f64; 2], max: [f64; 2] },
@@ -70,7 +70,7 @@ impl Shape {
         sane.then_some(Shape::Segment(ends))
     }
 
-    /// How far the shape reaches along a unit vector: the largest scalar product with its points [m].
+    /// How far the shape reaches along a unit vector: the largest scalar product with its points \[m].
     pub(super) fn reach(&self, direction: [f64; 2]) -> f64 {
         let along = |point: [f64; 2]| point[0] * direction[0] + point[1] * direction[1];
         match *self {

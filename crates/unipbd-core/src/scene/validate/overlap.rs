@@ -11,11 +11,11 @@ use crate::scene::{KeyPath, Scene};
 /// The lattice of a block or a disc.
 struct Lattice {
     path: KeyPath,
-    /// A lattice point [m].
+    /// A lattice point \[m].
     origin: [f64; 2],
     /// First and last number of a point, counted from the origin, per axis.
     range: [[f64; 2]; 2],
-    /// Radius of the disc about the origin that holds the points [m].
+    /// Radius of the disc about the origin that holds the points \[m].
     radius: Option<f64>,
     spacing: f64,
 }
@@ -51,7 +51,7 @@ impl Lattice {
         (nearest <= 0.5 + 1e-6 || count == 4).then_some(nearest * self.spacing)
     }
 
-    /// Distance of some pair of particles that is too near [m].
+    /// Distance of some pair of particles that is too near \[m].
     fn overlap(&self, other: &Lattice) -> Option<f64> {
         let margin = self.spacing * (0.5 + 1e-6);
         let [columns, rows] = [0, 1].map(|axis| {
@@ -88,7 +88,7 @@ fn lattices(scene: &Scene, spacing: f64) -> Vec<Lattice> {
     lattices
 }
 
-/// For each lattice an earlier one that it overlaps, with the distance of two particles [m].
+/// For each lattice an earlier one that it overlaps, with the distance of two particles \[m].
 ///
 /// A line sweeps over the plane from left to right. The lattices that it crosses are sorted by their lower ends; one that
 /// overlaps is taken out at once, so the others hardly overlap, and each new one meets a few of them only.

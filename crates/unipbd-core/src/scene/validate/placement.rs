@@ -63,7 +63,7 @@ const SIDES: [(Side, &str, [f64; 2]); 4] = [
     (Side::Top, "top", [0.0, 1.0]),
 ];
 
-/// Where a side of a box lies along its outward normal [m].
+/// Where a side of a box lies along its outward normal \[m].
 fn side_level(outward: [f64; 2], min: [f64; 2], max: [f64; 2]) -> f64 {
     let axis = usize::from(outward[0] == 0.0);
     if outward[axis] > 0.0 { max[axis] } else { -min[axis] }

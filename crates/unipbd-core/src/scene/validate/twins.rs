@@ -68,7 +68,7 @@ pub(super) fn check_bodies(checker: &mut Checker) {
     }
 }
 
-/// Diameter or shorter side of a body [m].
+/// Diameter or shorter side of a body \[m].
 fn size(body: &BodyDescription) -> f64 {
     let (low, high) = body.shape().bounds();
     (high - low).min_element()

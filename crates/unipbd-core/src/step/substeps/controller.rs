@@ -67,12 +67,12 @@ impl SubstepRule {
         matches!(self.substeps, Substeps::Fixed(_))
     }
 
-    /// Substeps for a frame of this length [s], the first of a run.
+    /// Substeps for a frame of this length \[s], the first of a run.
     pub fn choose(&self, frame: f64, demand: Demand) -> Choice {
         self.choose_after(0, frame, demand)
     }
 
-    /// Substeps for a frame of this length [s] that follows one of `last` substeps.
+    /// Substeps for a frame of this length \[s] that follows one of `last` substeps.
     pub fn choose_after(&self, last: u32, frame: f64, demand: Demand) -> Choice {
         if let Substeps::Fixed(count) = self.substeps {
             let count = count.max(1);

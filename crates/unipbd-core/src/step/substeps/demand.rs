@@ -173,7 +173,7 @@ impl World {
         self.pull().length() * depth + self.clock.push.spread * half
     }
 
-    /// Width and depth of the liquids, across gravity and along it [m]; 0 without either.
+    /// Width and depth of the liquids, across gravity and along it \[m]; 0 without either.
     pub(in crate::step) fn extent(&self) -> [f64; 2] {
         let down = self.down();
         let extents = [down.perp(), down].map(|direction| self.survey(direction, is_liquid).depth());

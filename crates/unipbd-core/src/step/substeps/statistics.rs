@@ -19,7 +19,7 @@ pub(in crate::step) struct FluidStatistics {
     stored: f64,
     /// Sum of the squares of the pressures over density, times the fourth power of the substep [m^4].
     pressure: f64,
-    /// Largest coordinate along a direction and largest against it [m]; not finite without particles.
+    /// Largest coordinate along a direction and largest against it \[m]; not finite without particles.
     reach: [Real; 2],
 }
 
@@ -66,12 +66,12 @@ impl FluidStatistics {
         (3.0 * self.mean(self.pressure)).sqrt() / (dt * dt)
     }
 
-    /// Energies over mass of motion and, after a substep of this length [s], of compression [m^2/s^2].
+    /// Energies over mass of motion and, after a substep of this length \[s], of compression [m^2/s^2].
     pub fn energies(self, dt: f64) -> [f64; 2] {
         [0.5 * self.mean(self.square), self.mean(self.stored) / (dt * dt)]
     }
 
-    /// How far the particles extend along the direction [m]; not finite without particles.
+    /// How far the particles extend along the direction \[m]; not finite without particles.
     pub fn depth(self) -> f64 {
         f64::from(self.reach[0]) + f64::from(self.reach[1])
     }

@@ -79,7 +79,7 @@ impl Walls {
     }
 
     /// Visits the contribution of each wall near `x` to the gradient of the coverage there [1/m], and the vector from
-    /// that wall to `x` [m].
+    /// that wall to `x` \[m].
     pub(crate) fn pushes(&self, x: Vector, coverage: &Coverage, mut visit: impl FnMut(Vector, Vector)) {
         let reach = coverage.radius();
         for plane in &self.planes {

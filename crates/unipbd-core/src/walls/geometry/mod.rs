@@ -14,7 +14,7 @@ mod surfaces;
 pub struct Hit {
     /// Direction out of the wall, of length 1.
     pub normal: Vector,
-    /// Distance to the surface, positive inside the wall [m].
+    /// Distance to the surface, positive inside the wall \[m].
     pub depth: Real,
     /// Coulomb friction coefficient.
     pub friction: Real,
@@ -94,7 +94,7 @@ impl Walls {
         self.planes.is_empty() && self.rectangles.is_empty()
     }
 
-    /// A wall coordinate along each axis, if there is one: grids are aligned with it [m].
+    /// A wall coordinate along each axis, if there is one: grids are aligned with it \[m].
     pub(crate) fn anchor(&self) -> Vector {
         let along = |axis: usize| {
             let wall = self.planes.iter().find(|plane| plane.normal[axis].abs() == 1.0);

@@ -8,7 +8,7 @@ use crate::math::{Real, Vector};
 pub(crate) struct Surface {
     /// Number of the wall among the measured ones.
     pub wall: u16,
-    /// Ends [m].
+    /// Ends \[m].
     pub ends: [Vector; 2],
     /// Direction out of the wall, of length 1.
     pub normal: Vector,

@@ -10,7 +10,7 @@ use std::f64::consts::TAU;
 pub(crate) struct OutlineSurface {
     /// Number of the outline.
     pub outline: usize,
-    /// Ends [m].
+    /// Ends \[m].
     pub ends: [Vector; 2],
     /// Direction out, of length 1.
     pub normal: Vector,
@@ -27,7 +27,7 @@ impl Outlines {
         self.met(&corners, Moment::End).filter(|&outline| self.spots[outline].of.fixed).collect()
     }
 
-    /// The distance from the nearest of some outlines, negative inside; no farther than `most` either way [m].
+    /// The distance from the nearest of some outlines, negative inside; no farther than `most` either way \[m].
     pub(crate) fn distance_from(&self, outlines: &[usize], x: Vector, most: Real) -> Real {
         let mut nearest = most;
         for spot in outlines.iter().map(|&outline| &self.spots[outline]) {
@@ -36,7 +36,7 @@ impl Outlines {
         if nearest < -most { -most } else { nearest }
     }
 
-    /// Visits the surfaces of the fixed outlines within a box; those of discs in pieces no longer than `piece` [m].
+    /// Visits the surfaces of the fixed outlines within a box; those of discs in pieces no longer than `piece` \[m].
     pub(crate) fn fixed_surfaces(&self, bounds: [Vector; 2], piece: Real, mut visit: impl FnMut(OutlineSurface)) {
         for outline in self.fixed_within(bounds) {
             let spot = &self.spots[outline];

@@ -18,7 +18,7 @@ use round::Round;
 /// Where an outline is: the place of its origin, and the direction of its x axis, of length 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
-    /// Place of the origin [m].
+    /// Place of the origin \[m].
     pub position: Vector64,
     /// Direction of the x axis.
     pub axis: Vector64,
@@ -69,7 +69,7 @@ struct Spot {
     inner: Vec<bool>,
     /// At the start and at the end of the substep.
     places: [Place; 2],
-    /// Points farther than this from the origin see nothing of it [m].
+    /// Points farther than this from the origin see nothing of it \[m].
     reach: Real,
 }
 
@@ -92,7 +92,7 @@ pub struct Near {
 
 impl Outlines {
     /// None yet, for this kernel and liquids of this spacing, if walls are to [uphold](super::Coverage::upholding) them
-    /// [m].
+    /// \[m].
     pub fn new(kernel: Kernel<WendlandC2>, upheld: Option<f64>, periodic: Periodic) -> Self {
         Outlines { kernel, tables: None, upheld, periodic, spots: Vec::new(), version: 0 }
     }
@@ -140,7 +140,7 @@ impl Outlines {
         self.spots[outline].of.body
     }
 
-    /// The way from the origin of an outline to a point, the shortest where the domain repeats [m].
+    /// The way from the origin of an outline to a point, the shortest where the domain repeats \[m].
     pub fn arm(&self, outline: usize, x: Vector, moment: Moment) -> Vector64 {
         let apart = wide(x) - self.spots[outline].places[moment as usize].position;
         if self.periodic.any() { wide(self.periodic.min_image(vector(apart))) } else { apart }
@@ -184,7 +184,7 @@ impl Outlines {
     }
 
     /// Visits the contribution of each edge near `x` to the gradient of the coverage there [1/m], and the vector from
-    /// its line to `x` [m].
+    /// its line to `x` \[m].
     pub(crate) fn pushes(&self, x: Vector, mut visit: impl FnMut(Vector, Vector)) {
         let Some(tables) = &self.tables else { return };
         for spot in &self.spots {
@@ -226,7 +226,7 @@ impl Outlines {
         });
     }
 
-    /// Memory held [bytes].
+    /// Memory held \[bytes].
     pub(crate) fn memory_bytes(&self) -> usize {
         self.spots.iter().map(|spot| size_of::<Spot>() + spot.form.memory_bytes()).sum()
     }

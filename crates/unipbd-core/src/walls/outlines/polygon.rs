@@ -52,7 +52,7 @@ pub(super) struct Seen {
 }
 
 impl Polygon {
-    /// A simple polygon of counter-clockwise corners; points farther than `reach` from it see nothing of it [m]. `inner`
+    /// A simple polygon of counter-clockwise corners; points farther than `reach` from it see nothing of it \[m]. `inner`
     /// tells the edges against which other bodies lie.
     pub fn new(corners: &[Vector64], inner: &[bool], reach: f64) -> Polygon {
         let (low, high) = corners.iter().fold((corners[0], corners[0]), |(low, high), c| (low.min(*c), high.max(*c)));
@@ -190,7 +190,7 @@ impl Polygon {
         smaller(best, Real::MAX).sqrt() * side
     }
 
-    /// Memory held [bytes].
+    /// Memory held \[bytes].
     pub fn memory_bytes(&self) -> usize {
         use crate::bytes::held;
         held(&self.edges) + held(&self.starts) + held(&self.near) + held(&self.inside)

@@ -25,7 +25,7 @@ pub(super) struct Round {
 }
 
 impl Round {
-    /// A disc of this radius [m].
+    /// A disc of this radius \[m].
     pub fn new<K: Shape>(radius: f64, kernel: &Kernel<K>, tables: &EdgeTables) -> Round {
         let reach = f64::from(kernel.radius());
         // From the farthest distance of the centres inwards, the part grows by its derivative.

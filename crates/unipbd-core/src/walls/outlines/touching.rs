@@ -57,7 +57,7 @@ fn world(place: Place, corner: Vector64) -> Vector64 {
     place.position + place.axis.rotate(corner)
 }
 
-/// The part of a side along which another one lies against it, from its first end [m].
+/// The part of a side along which another one lies against it, from its first end \[m].
 fn overlap([from, to]: [Vector64; 2], other: [Vector64; 2], tolerance: f64) -> Option<[f64; 2]> {
     let length = (to - from).length();
     let along = (to - from) / length;
