@@ -147,7 +147,7 @@ entries! {
         /// Reading in the unit of its kind; not a number where there is nothing to read.
         #[quantity(2)]
         pub value: f64,
-        /// Kind: level and front \[m], pressure [N/m], force \[N], flow_rate [m^2/s].
+        /// Kind, with its unit: level and front in m, pressure in N/m, force in N, flow_rate in m^2/s.
         #[quantity(3)]
         pub kind: GaugeKind,
     }
