@@ -6,6 +6,7 @@ pub mod constraints;
 mod coupling;
 pub mod edit;
 pub mod effects;
+mod gauge_kind;
 pub mod kernel;
 pub mod legacy;
 pub mod math;

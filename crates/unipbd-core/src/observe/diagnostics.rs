@@ -1,9 +1,9 @@
 //! The diagnostics. A quantity is declared here and computed in `step/diagnose.rs`; all else follows.
 
 use super::quantity::{Entry, Field, Quantity, Table, Value, entries, table};
+use crate::gauge_kind::GaugeKind;
 use crate::math::Vector64;
 use crate::phase::Phase;
-use crate::scene::GaugeKind;
 
 table! {
     /// The state of a run at one moment, in numbers. Computed when asked for, from the state alone.
