@@ -29,6 +29,7 @@ moments() {
         smoke_ring_obstacle) echo 0.6 2.0 ;;
         soft_bodies) echo 0.65 6.0 ;;
         everything) echo 0.7 4.0 ;;
+        sloshing) echo 4.1 4.7 ;;
         *) echo 1.0 ;;
     esac
 }

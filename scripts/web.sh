@@ -74,12 +74,12 @@ cp web/package/* LICENSE-MIT LICENSE-APACHE "$out/npm/"
 cp "$module" "$out/npm/unipbd.wasm"
 cp web/page/* web/package/unipbd.js "$out/web/"
 cp "$module" "$out/web/unipbd.wasm"
-cp scenes/*.toml "$out/web/scenes/"
-# The list of scenes: files with their titles.
+# The list of scenes: files with their titles. A page has no files beside a scene.
 {
     printf '['
     separator=
-    for scene in scenes/*.toml; do
+    for scene in $(grep -L '^file = ' scenes/*.toml); do
+        cp "$scene" "$out/web/scenes/"
         title=$(sed -n 's/^name = "\(.*\)"/\1/p' "$scene" | head -n 1)
         printf '%s\n{"file": "%s", "title": "%s"}' "$separator" "$(basename "$scene" .toml)" "$title"
         separator=,

@@ -21,12 +21,13 @@ except ModuleNotFoundError:  # Python 3.10
     import tomli as tomllib
 
 TOPICS = {
-    "world": ("The world and its solver", ["", "domain", "environment", "solver", "view"]),
+    "world": ("The world and its solver", ["", "domain", "environment", "shaking", "solver", "view"]),
     "materials": ("Materials", ["liquid", "gas", "smoke", "solid"]),
     "particles": ("Where particles start, come and go",
                   ["block", "disc", "points", "wave", "emitter", "injector", "heater", "sink"]),
     "walls": ("Walls", ["tank", "obstacle", "half_plane"]),
     "bodies": ("Bodies, joints, ropes", ["body", "joint", "rope", "contacts"]),
+    "gauges": ("Gauges", ["gauge"]),
     "checks": ("Expectations and comparison with the papers", ["expect", "legacy"]),
 }
 UNIT = re.compile(r"\[((?:kg|m|s|N|J|1|degrees|rad|K)(?:[ /^*0-9a-z]*))\]")
@@ -38,11 +39,15 @@ TRIED = {
     "number": ("1.0", "0.5", "0.1", "2.0", "10.0"), "integer": ("1", "2", "8"), "boolean": ("true",),
     "string": ('"water"', '"#3399ff"'), "array of 2 numbers": ("[0.0, 1.0]", "[1.0, 2.0]", "[0.5, 0.5]"),
     "array of integers": ("[0]",), "array of strings": ('["water"]',), "array of points": ("[[0.55, 3.05]]",),
+    "array of numbers": ("[0.0, 0.5, 0.0]",),
 }
-# Examples by the name of the key.
+# Examples by the name of the key, or by its whole path.
 NAMED = {
     "name": ('"floor"',), "other": ('"raft"',),
     "region": ("{ center = [5.0, 6.0], radius = 0.5 }",), "velocities": ("[[0.0, -1.0]]",),
+    "file": ('"piston.csv"',), "line": ("[[1.5, 0.0], [1.5, 2.0]]",), "time": ("[0.0, 1.0, 2.0]",),
+    "body.motion.table": ("{ time = [0.0, 1.0, 2.0], x = [0.0, 0.5, 0.0] }",),
+    "shaking.table": ("{ time = [0.0, 1.0, 2.0], ax = [0.0, 0.5, 0.0] }",),
     "path": ("[{ time = 1.0, offset = [0.5, 0.0] }, { time = 2.0, offset = [0.0, 0.0] }]",),
 }
 
@@ -214,7 +219,7 @@ class Checker:
         if not key.example and key.words:
             key.example = json.dumps(key.words[0][0])
         if not key.example:
-            tried = NAMED.get(key.name, ()) + TRIED.get(key.kind, ())
+            tried = NAMED.get(f"{path}.{key.name}", NAMED.get(key.name, ())) + TRIED.get(key.kind, ())
             fine = (value for value in tried if not self.problems(path, many, key.name, value))
             key.example = next(fine, tried[0] if tried else "")
 

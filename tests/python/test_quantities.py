@@ -30,6 +30,7 @@ def documented() -> dict[str, dict[str, list[str]]]:
 
 def measured_pool(scene: up.Scene) -> up.Simulation:
     scene.tank[0]["name"] = "tank"
+    scene.add_gauge("depth", "level", at=(0.5, 0.0))
     return scene.build(seed=7, threads=1)
 
 
@@ -44,7 +45,7 @@ def check(diagnostics: Mapping[str, Any], further: set[str]) -> None:
 
 def test_the_page_has_the_tables() -> None:
     tables = documented()
-    assert set(tables) == {"", "materials", "groups", "walls"} and len(tables[""]) > 20
+    assert set(tables) == {"", "materials", "groups", "walls", "gauges"} and len(tables[""]) > 20
     assert tables[""]["momentum"] == ["momentum_x", "momentum_y"]
 
 

@@ -102,6 +102,7 @@ fn hash_recorded(loaded: &LoadedScene, frames: u64) -> u64 {
         seed: simulation.solver.seed(),
         fps: loaded.scene.fps,
         gravity: loaded.scene.gravity,
+        gauges: Vec::new(),
     };
     let fields = Fields::ALL;
     let mut recorder = Recorder::to_writer(io::sink(), Path::new("nowhere"), &header, fields).expect("it starts");

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-use unipbd_core::observe::{Diagnostics, Entry, GroupDiagnostics, MaterialDiagnostics, Table, WallForce};
+use unipbd_core::observe::{Diagnostics, Entry, GaugeReading, GroupDiagnostics, MaterialDiagnostics, Table, WallForce};
 use unipbd_tests::repository;
 
 const DIAGNOSTICS: &str = "\
@@ -46,6 +46,7 @@ fn the_page_on_diagnostics_is_that_of_the_table() {
     entries::<MaterialDiagnostics>(&mut expected, "material");
     entries::<GroupDiagnostics>(&mut expected, "constraint group");
     entries::<WallForce>(&mut expected, "wall with a name");
+    entries::<GaugeReading>(&mut expected, "gauge");
     let path = repository().join("docs/diagnostics.md");
     if std::env::var_os("UPDATE_DOCUMENTS").is_some() {
         std::fs::write(&path, &expected).expect("the page can be written");

@@ -11,6 +11,7 @@ pub fn running<'py>(py: Python<'py>, of: &Diagnostics) -> PyResult<Bound<'py, Py
     add_list(&dict, &of.materials)?;
     add_list(&dict, &of.groups)?;
     add_list(&dict, &of.walls)?;
+    add_list(&dict, &of.gauges)?;
     Ok(dict)
 }
 

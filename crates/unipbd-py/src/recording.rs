@@ -33,6 +33,7 @@ impl Recorder {
                 seed: world.running.solver.seed(),
                 fps,
                 gravity: world.scene.gravity,
+                gauges: world.scene.gauge.iter().map(|gauge| gauge.name.clone()).collect(),
             }
         };
         let recorder = LogRecorder::create(&path, &header, fields).map_err(|error| errors::record(py, &error))?;

@@ -15,11 +15,12 @@ use crate::errors::{self, Written};
 /// The name of a scene that has no file, in messages.
 const NO_FILE: &str = "scene";
 
-/// The scene of a TOML text as a dict with all its defaults.
+/// The scene of a TOML text as a dict with all its defaults. Files that it names are read from the folder.
 #[pyfunction]
-#[pyo3(signature = (text, file_name="scene.toml"))]
-pub fn parse_scene<'py>(py: Python<'py>, text: &str, file_name: &str) -> PyResult<Bound<'py, PyDict>> {
-    let loaded = scene_file::parse(text, file_name, &[]).map_err(|error| errors::scene(py, error, Written::InFile))?;
+#[pyo3(signature = (text, file_name="scene.toml", folder=PathBuf::new()))]
+pub fn parse_scene<'py>(py: Python<'py>, text: &str, file_name: &str, folder: PathBuf) -> PyResult<Bound<'py, PyDict>> {
+    let loaded = scene_file::parse_in(&folder, text, file_name, &[])
+        .map_err(|error| errors::scene(py, error, Written::InFile))?;
     to_dict(py, &loaded.scene)
 }
 
@@ -83,22 +84,28 @@ fn to_dict<'py>(py: Python<'py>, scene: &Scene) -> PyResult<Bound<'py, PyDict>> 
 
 /// The scene of a description, free of problems.
 pub fn from_dict(py: Python<'_>, description: &Bound<'_, PyDict>) -> PyResult<CheckedScene> {
-    let checked = read(py, description)?.check();
-    checked.or_else(|_| Err(explain(py, convert::table(description)?)))
+    let scene = read(py, description)?;
+    let text = || Ok::<_, PyErr>(convert::table(description)?.to_string());
+    if scene_file::names_files(&scene) {
+        return parsed(py, &text()?);
+    }
+    scene.check().or_else(|_| parsed(py, &text()?))
 }
 
 /// The scene of a description that may still make no sense.
 fn read(py: Python<'_>, description: &Bound<'_, PyDict>) -> PyResult<Scene> {
     let table = convert::table(description)?;
-    Scene::deserialize(Value::Table(table)).or_else(|_| Err(explain(py, convert::table(description)?)))
+    Scene::deserialize(Value::Table(table)).or_else(|_| {
+        let text = convert::table(description)?.to_string();
+        parsed(py, &text).map(CheckedScene::into_scene)
+    })
 }
 
-/// What is wrong with it, by the checks that a file goes through.
-fn explain(py: Python<'_>, table: Table) -> PyErr {
-    let text = table.to_string();
-    match scene_file::parse(&text, NO_FILE, &[]) {
-        Err(error @ SceneFileError::Invalid { .. }) => errors::scene(py, error, Written::FromDict),
-        Err(error) => errors::other(py, &error.to_string()),
-        Ok(_) => errors::other(py, "the scene cannot be read"),
+/// The scene of a description as text: what is wrong with it is named as for a file, and files that it names are read.
+fn parsed(py: Python<'_>, text: &str) -> PyResult<CheckedScene> {
+    match scene_file::parse(text, NO_FILE, &[]) {
+        Ok(loaded) => Ok(loaded.scene),
+        Err(error @ SceneFileError::Invalid { .. }) => Err(errors::scene(py, error, Written::FromDict)),
+        Err(error) => Err(errors::other(py, &error.to_string())),
     }
 }

@@ -178,6 +178,17 @@ impl Solver {
         diagnostics::running(py, &found)
     }
 
+    /// Readings of the gauges by name.
+    fn gauges<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let world = self.lock(py)?;
+        let solver = &world.running.solver;
+        let dict = PyDict::new(py);
+        for gauge in py.detach(|| solver.gauges()) {
+            dict.set_item(gauge.name, gauge.value)?;
+        }
+        Ok(dict)
+    }
+
     /// Wall-clock time by stage since the start [s].
     fn timings<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let dict = PyDict::new(py);

@@ -12,6 +12,8 @@ mod overrides;
 mod place;
 mod renamed;
 mod repair;
+#[cfg(not(target_family = "wasm"))]
+mod samples;
 mod schema;
 mod source;
 mod syntax;
@@ -43,6 +45,8 @@ const LARGEST_FILE: u64 = 4 << 20;
 pub struct LoadedScene {
     /// The scene, with the overrides.
     pub scene: CheckedScene,
+    /// Whether parts of it came from other files: the text alone does not tell it.
+    pub has_files: bool,
     /// The file as read, without the overrides.
     pub text: String,
     /// Where the file is.
@@ -65,16 +69,29 @@ pub fn load(path: impl AsRef<Path>, overrides: &[Override]) -> Result<LoadedScen
         return Err(SceneFileError::whole_file(&name, message, "a scene file is a few kilobytes of TOML text"));
     }
     let text = String::from_utf8(bytes).map_err(|error| source::not_text(&name, &error))?;
-    let loaded = parse(&text, &name, overrides)?;
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let loaded = parse_in(folder, &text, &name, overrides)?;
     Ok(LoadedScene { path: path.to_owned(), ..loaded })
 }
 
-/// Reads a scene from text; `file_name` stands in messages.
+/// Reads a scene from text; `file_name` stands in messages. Files that the scene names are read from the current
+/// folder.
 pub fn parse(text: &str, file_name: &str, overrides: &[Override]) -> Result<LoadedScene, SceneFileError> {
+    parse_in(Path::new(""), text, file_name, overrides)
+}
+
+/// The same, with files from this folder. WebAssembly has no files: there a scene that names one is refused.
+pub fn parse_in(
+    folder: &Path,
+    text: &str,
+    file_name: &str,
+    overrides: &[Override],
+) -> Result<LoadedScene, SceneFileError> {
     let sources = Sources::new(file_name, text, overrides.iter().map(Override::text));
-    let scene = read(&sources, overrides).map_err(|faults| sources.error(faults))?;
+    let (scene, has_files) = read(&sources, overrides, folder).map_err(|faults| sources.error(faults))?;
     Ok(LoadedScene {
         scene,
+        has_files,
         text: text.to_owned(),
         path: PathBuf::from(file_name),
         sha256: Sha256::digest(text).iter().map(|byte| format!("{byte:02x}")).collect(),
@@ -82,7 +99,8 @@ pub fn parse(text: &str, file_name: &str, overrides: &[Override]) -> Result<Load
     })
 }
 
-fn read(sources: &Sources, overrides: &[Override]) -> Result<CheckedScene, Vec<Fault>> {
+/// The scene, and whether parts of it came from other files.
+fn read(sources: &Sources, overrides: &[Override], folder: &Path) -> Result<(CheckedScene, bool), Vec<Fault>> {
     let schema = schema();
     let (table, errors) = DeTable::parse_recoverable(sources.text());
     let (mut faults, doubtful) = syntax::faults(sources.text(), table.get_ref(), &errors);
@@ -99,17 +117,36 @@ fn read(sources: &Sources, overrides: &[Override]) -> Result<CheckedScene, Vec<F
     }
     faults.append(&mut repair.faults);
     match Scene::deserialize(tree.to_toml()) {
-        Ok(scene) => {
+        Ok(mut scene) => {
+            let has_files = names_files(&scene);
+            faults.extend(load_samples(&mut scene, folder, &tree));
             let checked = scene.check();
             if let Err(problems) = &checked {
                 let causes = problems.0.iter().filter(|problem| !repair.explains(problem, &tree));
                 faults.extend(causes.map(|problem| locate(problem.clone(), &tree)));
             }
-            checked.ok().filter(|_| faults.is_empty()).ok_or(faults)
+            checked.ok().filter(|_| faults.is_empty()).map(|scene| (scene, has_files)).ok_or(faults)
         }
         Err(error) if faults.is_empty() => Err(vec![Fault::new(KeyPath::default(), None, error.message())]),
         Err(_) => Err(faults),
     }
+}
+
+/// Whether a scene names files with samples, which [`parse`] reads into its tables.
+pub fn names_files(scene: &Scene) -> bool {
+    let motions = || scene.body.iter().filter_map(|body| body.motion.as_ref());
+    !scene.shaking.file.is_empty() || motions().any(|motion| !motion.file.is_empty())
+}
+
+#[cfg(not(target_family = "wasm"))]
+fn load_samples(scene: &mut Scene, folder: &Path, tree: &Node) -> Vec<Fault> {
+    samples::load(scene, folder, tree)
+}
+
+/// The keys stay, and the checks refuse them.
+#[cfg(target_family = "wasm")]
+fn load_samples(_: &mut Scene, _: &Path, _: &Node) -> Vec<Fault> {
+    Vec::new()
 }
 
 /// Finds the place of a problem in the file: its key, or the nearest table around it.

@@ -66,6 +66,17 @@ test("a mistake has its line, column and hint", () => {
   });
 });
 
+test("a scene whose motion is in a file is refused with what to do: there are no files", () => {
+  const shaken = scene("dam_break").replace("[[liquid]]", '[shaking]\nfile = "shake.csv"\n\n[[liquid]]');
+  assert.throws(() => unipbd.open(shaken), (error) => {
+    assert.match(error.problems[0].message, /no files here, "shake.csv" cannot be read/);
+    assert.match(error.problems[0].hint, /`table`/);
+    return true;
+  });
+  const table = shaken.replace('file = "shake.csv"', "table = { time = [0.0, 1.0], ax = [0.0, 1.0] }");
+  assert.doesNotThrow(() => unipbd.open(table).step());
+});
+
 test("views show the run, and settings change it while it goes on", () => {
   const run = unipbd.open(scene("floating_bodies"), { "liquid.water.kinematic_viscosity": 0.1 });
   assert.equal(run.positions.length, 2 * run.ids.length);

@@ -7,12 +7,13 @@ use unipbd_core::scene::nearest;
 
 use crate::exit::Failure;
 
-const COMMANDS: [&str; 13] = [
+const COMMANDS: [&str; 14] = [
     "run",
     "check",
     "expect",
     "info",
     "render",
+    "plot",
     "export",
     "recover",
     "layout",

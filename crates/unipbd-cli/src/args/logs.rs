@@ -30,6 +30,7 @@ const EXPORT_HELP: &str = "\
 Examples:
   unipbd export dam_break.mcap -o dam_break.npz             NumPy: arrays of all frames
   unipbd export dam_break.mcap -o tables/ --format csv      pandas: particles.csv, bodies.csv, diagnostics.csv
+  unipbd export dam_break.mcap -o columns/ --format parquet   the same as Parquet, for large runs
   unipbd export dam_break.mcap -o paraview/ --format vtk    ParaView: open particles.pvd and bodies.pvd
   unipbd export dam_break.mcap -o late.npz --from 1.5 --every 10";
 
@@ -65,6 +66,9 @@ pub struct ExportArgs {
 pub enum ExportFormat {
     /// Tables of text, one row per particle and frame
     Csv,
+    /// The same tables as Apache Parquet: typed and compressed, for pandas, Polars, DuckDB
+    #[cfg(feature = "parquet")]
+    Parquet,
     /// Arrays of NumPy in one file
     Npz,
     /// VTK XML PolyData, one file per frame

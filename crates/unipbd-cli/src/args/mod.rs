@@ -3,6 +3,7 @@
 mod bench;
 mod dispatch;
 mod logs;
+mod plot;
 mod render;
 mod run;
 mod stop_on;
@@ -16,6 +17,7 @@ use clap_complete::Shell;
 pub use bench::BenchArgs;
 pub use dispatch::{is_log, log_is_no_scene, with_default_command};
 pub use logs::{ExportArgs, ExportFormat, LayoutArgs, RecoverArgs};
+pub use plot::PlotArgs;
 pub use render::RenderArgs;
 pub use run::{LogArgs, RunArgs, SceneChanges};
 pub use stop_on::StopCondition;
@@ -50,6 +52,7 @@ Examples:
   unipbd bench my_scene.toml --threads 1,2         time a scene
   unipbd render open_gas.mcap -o plume.gif         make an animation of a log
   unipbd export open_gas.mcap -o plume.npz         arrays for NumPy
+  unipbd plot open_gas.mcap --gauge energy         a number of the log over time, as open_gas.svg
   unipbd run my_scene.toml --json --no-record | jq .density_error_max";
 
 /// Run, inspect and draw 2D particle scenes: liquids, gas, smoke and rigid bodies.
@@ -102,7 +105,9 @@ pub enum Command {
     Info(InfoArgs),
     /// Draw a log (or a scene, which is run first) as pictures, a film or a page that plays
     Render(RenderArgs),
-    /// Write a log as CSV tables, NumPy arrays or VTK files
+    /// Plot gauges and other numbers of a log over time
+    Plot(PlotArgs),
+    /// Write a log as tables (CSV, Parquet), NumPy arrays or VTK files
     Export(ExportArgs),
     /// Complete the log of a run that was killed
     Recover(RecoverArgs),

@@ -121,7 +121,7 @@ fn style() -> impl TypedValueParser<Value = Style> {
     names.map(|name| if name == "discs" { Style::Discs } else { Style::Surface })
 }
 
-fn background() -> impl TypedValueParser<Value = Background> {
+pub(super) fn background() -> impl TypedValueParser<Value = Background> {
     let names = PossibleValuesParser::new(["dark", "light"]);
     names.map(|name| if name == "light" { Background::Light } else { Background::Dark })
 }

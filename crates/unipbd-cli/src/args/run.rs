@@ -87,7 +87,8 @@ pub struct RunArgs {
     /// A quantity, < or >, and a number: density_error (largest, as a fraction), speed (largest)
     /// [m/s], energy (kinetic and potential) [J], time [s], particles, the count of a phase
     /// (liquid, gas, smoke, rigid, solid), or any number of the diagnostics by its name, such as
-    /// density_error_mean, pressure_max, momentum_x, substeps (docs/diagnostics.md lists them). Quote it: < and >
+    /// density_error_mean, pressure_max, momentum_x, substeps (docs/diagnostics.md lists them), or gauge.NAME for a
+    /// gauge of the scene. Quote it: < and >
     /// mean something to a shell.
     #[arg(long, value_name = "CONDITION", help_heading = "Running")]
     pub stop_on: Vec<StopCondition>,

@@ -6,7 +6,7 @@ use std::sync::LazyLock;
 
 use unipbd_core::observe::{Diagnostics, Quantity, Table};
 use unipbd_core::phase::Phase;
-use unipbd_core::scene::nearest;
+use unipbd_core::scene::{Gauge, nearest};
 
 /// A number that a condition may name: a column of a quantity.
 #[derive(Debug)]
@@ -53,18 +53,64 @@ enum Comparison {
     Below,
 }
 
+/// How the reading of a gauge is named.
+const GAUGE: &str = "gauge.";
+
+/// What a condition is about.
+#[derive(Clone, Debug)]
+enum Subject {
+    Column(&'static Column),
+    /// The gauge of this name; whether there is one, the scene tells.
+    Gauge(String),
+}
+
+impl Subject {
+    fn parse(name: &str) -> Result<Self, String> {
+        if let Some(gauge) = name.strip_prefix(GAUGE) {
+            return Ok(Subject::Gauge(gauge.to_owned()));
+        }
+        COLUMNS.iter().find(|column| column.name == name).map(Subject::Column).ok_or_else(|| unknown_quantity(name))
+    }
+
+    fn read(&self, diagnostics: &Diagnostics) -> Option<f64> {
+        match self {
+            Subject::Column(column) => column.read(diagnostics),
+            Subject::Gauge(name) => {
+                let gauge = diagnostics.gauges.iter().find(|gauge| gauge.name == *name)?;
+                // What has nothing to read meets no condition.
+                Some(gauge.value).filter(|value| !value.is_nan())
+            }
+        }
+    }
+}
+
 /// A condition such as `density_error>0.05`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub struct StopCondition {
-    column: &'static Column,
+    subject: Subject,
     comparison: Comparison,
     threshold: f64,
 }
 
 impl StopCondition {
+    /// Refuses a gauge that is none of these.
+    pub fn check(&self, gauges: &[Gauge]) -> Result<(), String> {
+        let Subject::Gauge(name) = &self.subject else { return Ok(()) };
+        let names = || gauges.iter().map(|gauge| gauge.name.as_str());
+        if names().any(|known| known == name) {
+            return Ok(());
+        }
+        let hint = match nearest(name, names()) {
+            Some(known) => format!("did you mean \"{GAUGE}{known}\"?"),
+            None if gauges.is_empty() => "the scene has no [[gauge]]".to_owned(),
+            None => format!("its gauges are {}", names().take(8).collect::<Vec<_>>().join(", ")),
+        };
+        Err(format!("--stop-on {self}: the scene has no gauge \"{name}\"; {hint}"))
+    }
+
     /// The value that meets the condition, if it is met.
     pub fn met_by(&self, diagnostics: &Diagnostics) -> Option<f64> {
-        let value = self.column.read(diagnostics)?;
+        let value = self.subject.read(diagnostics)?;
         let met = match self.comparison {
             Comparison::Above => value > self.threshold,
             Comparison::Below => value < self.threshold,
@@ -79,7 +125,10 @@ impl fmt::Display for StopCondition {
             Comparison::Above => '>',
             Comparison::Below => '<',
         };
-        write!(f, "{}{sign}{}", self.column.name, self.threshold)
+        match &self.subject {
+            Subject::Column(column) => write!(f, "{}{sign}{}", column.name, self.threshold),
+            Subject::Gauge(name) => write!(f, "{GAUGE}{name}{sign}{}", self.threshold),
+        }
     }
 }
 
@@ -90,12 +139,12 @@ impl FromStr for StopCondition {
         let place = text.find(['<', '>']).ok_or("expected a quantity, < or >, and a number: density_error>0.05")?;
         let (name, rest) = (text[..place].trim(), &text[place + 1..]);
         let comparison = if text[place..].starts_with('<') { Comparison::Below } else { Comparison::Above };
-        let column = COLUMNS.iter().find(|column| column.name == name).ok_or_else(|| unknown_quantity(name))?;
+        let subject = Subject::parse(name)?;
         let threshold: f64 = rest.trim().parse().map_err(|_| format!("\"{}\" is not a number", rest.trim()))?;
         if threshold.is_nan() {
             return Err("nothing is larger or smaller than NaN".into());
         }
-        Ok(StopCondition { column, comparison, threshold })
+        Ok(StopCondition { subject, comparison, threshold })
     }
 }
 
@@ -110,6 +159,12 @@ fn unknown_quantity(name: &str) -> String {
 mod tests {
     use super::*;
     use unipbd_core::math::Vector64;
+    use unipbd_core::observe::GaugeReading;
+    use unipbd_core::scene::GaugeKind;
+
+    fn reading(name: &str, value: f64) -> GaugeReading {
+        GaugeReading { name: name.to_owned(), value, kind: GaugeKind::Level }
+    }
 
     fn diagnostics() -> Diagnostics {
         Diagnostics {
@@ -120,6 +175,7 @@ mod tests {
             potential_energy: 7.0,
             momentum: Vector64::new(1.0, -2.0),
             speed_max: 3.0,
+            gauges: [("level", 0.5), ("dry", f64::NAN)].map(|(name, value)| reading(name, value)).to_vec(),
             ..Diagnostics::default()
         }
     }
@@ -136,6 +192,8 @@ mod tests {
         assert_eq!(met("particles>1"), Some(800.0));
         assert_eq!(met("momentum_y<-1"), Some(-2.0));
         assert_eq!(met("density_error_min<-0.5"), None);
+        assert_eq!(met("gauge.level > 0.4"), Some(0.5));
+        assert_eq!((met("gauge.level<0.4"), met("gauge.dry<1"), met("gauge.dry>-1")), (None, None, None));
     }
 
     #[test]
@@ -151,6 +209,15 @@ mod tests {
             }
         }
         assert_eq!(words, ["substeps_reason"]);
+    }
+
+    #[test]
+    fn a_gauge_that_the_scene_lacks_is_named_with_the_one_that_is_meant() {
+        let condition: StopCondition = "gauge.levl>1".parse().unwrap();
+        let message = condition.check(&[Gauge::new("level", GaugeKind::Level)]).unwrap_err();
+        assert!(message.contains("no gauge \"levl\"; did you mean \"gauge.level\"?"), "{message}");
+        assert!(condition.check(&[]).unwrap_err().contains("the scene has no [[gauge]]"));
+        assert!(condition.check(&[Gauge::new("levl", GaugeKind::Level)]).is_ok());
     }
 
     #[test]

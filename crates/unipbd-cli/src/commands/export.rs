@@ -59,7 +59,9 @@ fn format(arguments: &ExportArgs) -> Result<ExportFormat, Failure> {
     match arguments.format {
         Some(format) => Ok(format),
         None if is_npz => Ok(ExportFormat::Npz),
-        None => Err(Failure::usage("give --format csv, npz or vtk (npz is meant where the output ends in .npz)")),
+        None => {
+            Err(Failure::usage("give --format csv, parquet, npz or vtk (npz is meant where the output ends in .npz)"))
+        }
     }
 }
 
@@ -68,6 +70,8 @@ fn exporter(format: ExportFormat, log: &Log, arguments: &ExportArgs) -> Result<B
     Ok(match format {
         ExportFormat::Csv => Box::new(export::Csv::new(path, replace, log)?),
         ExportFormat::Npz => Box::new(export::Npz::new(path, replace)?),
+        #[cfg(feature = "parquet")]
+        ExportFormat::Parquet => Box::new(export::Parquet::new(path, replace, log)?),
         ExportFormat::Vtk => Box::new(export::Vtk::new(path, replace, log)?),
     })
 }

@@ -13,7 +13,7 @@ use crate::report::Console;
 
 pub(super) fn layout(arguments: &LayoutArgs, console: Console) -> Result<Exit, Failure> {
     let log = Log::open(&arguments.log)?;
-    let text = format!("{:#}", layout_of(log.setting(), view(&log)?, &topics(&arguments.log)?));
+    let text = format!("{:#}", layout_of(log.setting(), view(&log)?, &topics(&arguments.log)?, &log.header().gauges));
     let Some(path) = &arguments.output else {
         console.line(text)?;
         return Ok(Exit::Success);

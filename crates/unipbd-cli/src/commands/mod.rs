@@ -9,6 +9,7 @@ mod export;
 mod info;
 mod layout;
 mod manual;
+mod plot;
 mod recording;
 mod recover;
 mod render;
@@ -28,6 +29,7 @@ pub fn execute(command: &Command, console: Console) -> Result<Exit, Failure> {
         Command::Expect(arguments) => expect::expect(arguments, console),
         Command::Info(arguments) => info::info(arguments, console),
         Command::Render(arguments) => render::render(arguments, console),
+        Command::Plot(arguments) => plot::plot(arguments, console),
         Command::Export(arguments) => export::export(arguments, console),
         Command::Recover(arguments) => recover::recover(arguments, console),
         Command::Layout(arguments) => layout::layout(arguments, console),

@@ -50,11 +50,12 @@ impl Recording {
         }
         let header = Header {
             setting: simulation.setting(&loaded.scene, &loaded.path),
-            scene_text: loaded.text.clone(),
+            scene_text: scene_text(loaded),
             overrides: loaded.overrides.iter().map(ToString::to_string).collect(),
             seed: simulation.solver.seed(),
             fps: loaded.scene.fps,
             gravity: loaded.scene.gravity,
+            gauges: loaded.scene.gauge.iter().map(|gauge| gauge.name.clone()).collect(),
         };
         let recorder = match destination.is_standard_output() {
             true => Recorder::to_writer(std::io::stdout(), "standard output".as_ref(), &header, fields),
@@ -85,6 +86,12 @@ impl Recording {
         }
         Ok(LogFile { path, bytes: summary.bytes })
     }
+}
+
+/// The text of the scene; one whose parts came from other files is written anew, with what was in them.
+fn scene_text(loaded: &LoadedScene) -> String {
+    let whole = loaded.has_files.then(|| toml::to_string(&loaded.scene).ok()).flatten();
+    whole.unwrap_or_else(|| loaded.text.clone())
 }
 
 /// Whether this is a named pipe, which nobody can write to before somebody reads it.

@@ -18,6 +18,8 @@ use crate::simulation::{Simulation, stage_names, title};
 pub(super) fn run(arguments: &RunArgs, console: Console) -> Result<Exit, Failure> {
     let destination = Recording::destination(&arguments.log, &arguments.scene, console)?;
     let loaded = load(&arguments.scene, &arguments.changes)?;
+    let gauges = &loaded.scene.gauge;
+    arguments.stop_on.iter().try_for_each(|condition| condition.check(gauges)).map_err(Failure::usage)?;
     let statistics = Statistics::start();
     let options = BuildOptions { threads: threads(arguments.threads)?, seed: None };
     let simulation = Simulation::new(&loaded.scene, options);

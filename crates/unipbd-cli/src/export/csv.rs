@@ -5,8 +5,9 @@ use std::path::{Path, PathBuf};
 
 use csv::Writer;
 use unipbd_core::observe::{Diagnostics, Material, Quantity, Table, Value};
+use unipbd_core::rigid::Body;
 
-use super::{ExportError, Exporter, at, prepare_folder};
+use super::{ExportError, Exporter, at, gauge_column, prepare_folder};
 use crate::read::{Frame, Log};
 use crate::record::Fields;
 
@@ -81,12 +82,8 @@ impl Csv {
             none => none.insert(start(&path, BODY_COLUMNS.to_vec())?),
         };
         for (id, body) in snapshot.bodies.iter().enumerate() {
-            let (place, velocity) = (body.position, body.velocity);
-            let [fluid, contact] = [body.fluid_force, body.contact_force];
-            let numbers = [place.x, place.y, body.angle, velocity.x, velocity.y, body.angular_velocity];
-            let forces = [fluid.x, fluid.y, body.fluid_torque, contact.x, contact.y, body.contact_torque];
             let words = [number.to_string(), snapshot.time.to_string(), id.to_string(), body.name.clone()];
-            let numbers = numbers.into_iter().chain(forces).map(|value| value.to_string());
+            let numbers = body_numbers(body).map(|value| value.to_string());
             output.write_record(words.into_iter().chain(numbers)).map_err(io).map_err(at(&path))?;
         }
         Ok(())
@@ -96,17 +93,16 @@ impl Csv {
         let path = self.folder.join(DIAGNOSTICS);
         let output = match &mut self.diagnostics {
             Some(output) => output,
-            none => {
-                let columns: Vec<String> = Diagnostics::QUANTITIES.iter().flat_map(Quantity::columns).collect();
-                none.insert(start(&path, columns)?)
-            }
+            none => none.insert(start(&path, columns_of(diagnostics))?),
         };
         let values = Diagnostics::QUANTITIES.iter().flat_map(|quantity| (quantity.read)(diagnostics).columns());
-        output.write_record(values.map(text)).map_err(io).map_err(at(&path))
+        let gauges = diagnostics.gauges.iter().map(|gauge| Value::Number(gauge.value));
+        output.write_record(values.chain(gauges).map(text)).map_err(io).map_err(at(&path))
     }
 }
 
-const BODY_COLUMNS: [&str; 16] = [
+/// Columns of the table of bodies.
+pub(super) const BODY_COLUMNS: [&str; 16] = [
     "frame",
     "time",
     "id",
@@ -152,6 +148,32 @@ fn start<C: AsRef<[u8]>>(path: &Path, columns: Vec<C>) -> Result<Writer<File>, E
     Ok(output)
 }
 
+/// The last twelve columns of the table of bodies.
+pub(super) fn body_numbers(body: &Body) -> [f64; 12] {
+    let (place, velocity) = (body.position, body.velocity);
+    let [fluid, contact] = [body.fluid_force, body.contact_force];
+    [
+        place.x,
+        place.y,
+        body.angle,
+        velocity.x,
+        velocity.y,
+        body.angular_velocity,
+        fluid.x,
+        fluid.y,
+        body.fluid_torque,
+        contact.x,
+        contact.y,
+        body.contact_torque,
+    ]
+}
+
+/// Names of the columns of the diagnostics, those of gauges at the end.
+pub(super) fn columns_of(diagnostics: &Diagnostics) -> Vec<String> {
+    let gauges = diagnostics.gauges.iter().map(|gauge| gauge_column(&gauge.name));
+    Diagnostics::QUANTITIES.iter().flat_map(Quantity::columns).chain(gauges).collect()
+}
+
 fn io(error: csv::Error) -> std::io::Error {
     error.into()
 }
@@ -159,6 +181,8 @@ fn io(error: csv::Error) -> std::io::Error {
 fn text(value: Value<'_>) -> String {
     match value {
         Value::Count(count) => count.to_string(),
+        // Empty where there is nothing to read, as pandas has it.
+        Value::Number(number) if number.is_nan() => String::new(),
         Value::Number(number) => number.to_string(),
         Value::Word(word) => word.to_owned(),
         Value::Vector(_) | Value::ByPhase(_) => String::new(),

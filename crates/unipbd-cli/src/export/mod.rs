@@ -1,7 +1,11 @@
 //! Logs as files that pandas, NumPy and ParaView read.
+//!
+//! Parquet is behind the feature `parquet`, which is on by default.
 
 mod csv;
 mod npz;
+#[cfg(feature = "parquet")]
+mod parquet;
 mod vtk;
 
 use std::path::{Path, PathBuf};
@@ -11,6 +15,8 @@ use crate::read::Frame;
 
 pub use csv::Csv;
 pub use npz::Npz;
+#[cfg(feature = "parquet")]
+pub use parquet::Parquet;
 pub use vtk::Vtk;
 
 /// Takes the frames of a log one by one.
@@ -44,6 +50,11 @@ impl fmt::Display for ExportError {
 }
 
 impl std::error::Error for ExportError {}
+
+/// The column of a gauge in tables that hold the diagnostics too.
+fn gauge_column(name: &str) -> String {
+    format!("gauge_{name}")
+}
 
 /// An error of the file system, with the file.
 fn at(path: &Path) -> impl FnOnce(io::Error) -> ExportError {

@@ -8,6 +8,7 @@
 //! | `id`, `phase`, `material` | (N,) | u32, u8, u16 | of each column; the phase by its number |
 //! | `body_pose`, `body_velocity` | (T, B, 3) | f64 | x, y, angle, and their rates |
 //! | a quantity of the diagnostics | (T,) | f64 | as `kinetic_energy` |
+//! | `gauge_NAME` | (T,) | f64 | the reading of a gauge; NaN where it has nothing to read |
 
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -19,7 +20,7 @@ use unipbd_core::observe::{Diagnostics, Table};
 use zip::ZipWriter;
 use zip::write::SimpleFileOptions;
 
-use super::{ExportError, Exporter, at};
+use super::{ExportError, Exporter, at, gauge_column};
 use crate::read::Frame;
 
 /// All frames in memory, written at the end.
@@ -118,6 +119,13 @@ impl Npz {
                     archive.add(&name, &[times], self.frames.iter().map(|frame| value(frame).unwrap_or(f64::NAN)))?;
                 }
             }
+        }
+        let gauges = |frame: &Held| frame.diagnostics.as_ref().map_or(0, |found| found.gauges.len());
+        let Some(widest) = self.frames.iter().max_by_key(|frame| gauges(frame)) else { return Ok(()) };
+        for (place, gauge) in widest.diagnostics.iter().flat_map(|found| &found.gauges).enumerate() {
+            let value = |frame: &Held| Some(frame.diagnostics.as_ref()?.gauges.get(place)?.value);
+            let values = self.frames.iter().map(|frame| value(frame).unwrap_or(f64::NAN));
+            archive.add(&gauge_column(&gauge.name), &[times], values)?;
         }
         Ok(())
     }

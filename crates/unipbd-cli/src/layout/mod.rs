@@ -15,8 +15,8 @@ const HEIGHT: f64 = 850.0;
 /// The part of the view that the scene fills.
 const FILLED: f64 = 0.95;
 
-/// The layout for a scene of which this region shall be seen, with the topics that the log has.
-pub fn layout(setting: &Setting, view: View, topics: &[String]) -> Value {
+/// The layout for a scene of which this region shall be seen, with the topics and gauges that the log has.
+pub fn layout(setting: &Setting, view: View, topics: &[String], gauges: &[String]) -> Value {
     let mut layout: Value = serde_json::from_str(TEMPLATE).unwrap_or_default();
     let panel = &mut layout["configById"][VIEW_PANEL];
     let [width, height] = [0, 1].map(|axis| view.max[axis] - view.min[axis]);
@@ -35,7 +35,29 @@ pub fn layout(setting: &Setting, view: View, topics: &[String]) -> Value {
         };
         panel["topics"][topic] = look;
     }
+    if !gauges.is_empty() {
+        add_gauges(&mut layout, gauges);
+    }
     layout
+}
+
+/// Puts a plot of the gauges above the other plots.
+fn add_gauges(layout: &mut Value, gauges: &[String]) {
+    let mut plot = layout["configById"]["Plot!error"].clone();
+    let like = plot["paths"][0].take();
+    let path = |name: &String| {
+        let mut path = like.clone();
+        (path["value"], path["label"]) = (format!("/gauges.{name}").into(), name.as_str().into());
+        path
+    };
+    plot["paths"] = gauges.iter().map(path).collect();
+    for title in ["foxglovePanelTitle", "lichtblickPanelTitle"] {
+        plot[title] = "Gauges".into();
+    }
+    layout["configById"]["Plot!gauges"] = plot;
+    let below = layout["layout"]["second"].take();
+    layout["layout"]["second"] =
+        json!({ "direction": "column", "splitPercentage": 30, "first": "Plot!gauges", "second": below });
 }
 
 fn cloud(visible: bool, size: f64) -> Value {
@@ -57,7 +79,7 @@ mod tests {
         let setting = Setting { spacing: 0.02, ..Setting::default() };
         let view = View { min: [-1.0, 0.0], max: [5.0, 2.0] };
         let topics = ["/particles", "/scene", "/tf"].map(String::from);
-        let layout = layout(&setting, view, &topics);
+        let layout = layout(&setting, view, &topics, &[]);
         let panel = &layout["configById"][VIEW_PANEL];
         let distance = panel["cameraState"]["distance"].as_f64().unwrap();
         assert!(distance * ASPECT >= 6.0 && (2.0..6.0).contains(&distance), "{distance}");

@@ -51,7 +51,7 @@ impl Assembler {
             }
             Topic::Log => self.frame.events.push(event(&decode(topic, data)?)),
             // The same again, for viewers.
-            Topic::Boundary | Topic::BodySamples | Topic::Scene | Topic::Transforms => {}
+            Topic::Boundary | Topic::BodySamples | Topic::Scene | Topic::Transforms | Topic::Gauges => {}
         }
         Ok(None)
     }

@@ -9,6 +9,7 @@ use unipbd_core::phase::Phase;
 use unipbd_core::rigid::Body;
 
 use super::body_message::bodies_message;
+use super::gauge_message::GaugeValues;
 use super::messages::{self, Level, Log, POINT_STRIDE, PointCloud};
 use super::quantity_message::diagnostics_message;
 use super::schema::ParticleColumns;
@@ -95,6 +96,9 @@ impl Encoder {
         self.encode_columns(snapshot, frame);
         if let Some(diagnostics) = diagnostics {
             frame.push(Topic::Diagnostics, now, &diagnostics_message(diagnostics, state_hash));
+            if !diagnostics.gauges.is_empty() {
+                frame.push(Topic::Gauges, now, &GaugeValues::of(diagnostics));
+            }
         }
         self.encode_particles(snapshot, frame);
         self.started = true;

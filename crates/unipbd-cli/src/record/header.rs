@@ -37,6 +37,8 @@ pub struct Header {
     pub fps: f64,
     /// Gravitational acceleration [m/s^2].
     pub gravity: [f64; 2],
+    /// Names of the gauges, in the order in which the diagnostics have them.
+    pub gauges: Vec<String>,
 }
 
 impl Header {
@@ -73,6 +75,9 @@ impl Header {
             ("materials", json(&materials)),
             ("walls", json(&walls)),
         ]);
+        if !self.gauges.is_empty() {
+            entries.insert("gauges", json(&self.gauges));
+        }
         if let Some(view) = &self.setting.view {
             entries.insert("view", json(view));
         }
@@ -101,6 +106,7 @@ impl Header {
             seed: entries.parse("seed")?,
             fps: entries.parse("fps")?,
             gravity: entries.json("gravity")?,
+            gauges: if entries.0.contains_key("gauges") { entries.json("gauges")? } else { Vec::new() },
         };
         Ok((header, entries.parse("fields")?))
     }

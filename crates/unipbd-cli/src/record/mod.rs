@@ -5,6 +5,7 @@
 //! | `/particles` | foxglove.PointCloud: x, y, z as f32, red, green, blue, alpha as u8 | every frame, last |
 //! | `/particles/columns` | unipbd.ParticleColumns | when the set of ids changed; with fields, every frame |
 //! | `/diagnostics` | unipbd.Diagnostics | every frame for which there are any |
+//! | `/gauges` | unipbd.Gauges: a number for each gauge, under its name | every frame, where the scene has gauges |
 //! | `/boundary` | foxglove.PointCloud: samples of the walls | once |
 //! | `/scene` | foxglove.SceneUpdate: walls, and bodies in their frames | once, and when a shape changed |
 //! | `/tf` | foxglove.FrameTransforms: all bodies, `world` to `body/<id>` | every frame |
@@ -22,6 +23,7 @@ mod destination;
 mod encode;
 mod error;
 mod fields;
+mod gauge_message;
 mod header;
 mod messages;
 mod quantity_message;

@@ -6,7 +6,7 @@ use prost::DecodeError;
 use prost_reflect::{DescriptorPool, DynamicMessage, MessageDescriptor, Value as LogValue};
 use prost_types::FileDescriptorSet;
 use unipbd_core::observe::{
-    Diagnostics, Entry, GroupDiagnostics, MaterialDiagnostics, Quantity, Table, Value, WallForce,
+    Diagnostics, Entry, GaugeReading, GroupDiagnostics, MaterialDiagnostics, Quantity, Table, Value, WallForce,
 };
 
 use super::quantity_schema::{NAME_TAG, PACKAGE, STATE_HASH_TAG, file, messages};
@@ -29,6 +29,7 @@ pub(super) fn diagnostics_message(diagnostics: &Diagnostics, state_hash: Option<
     set_list(&mut message, &diagnostics.materials);
     set_list(&mut message, &diagnostics.groups);
     set_list(&mut message, &diagnostics.walls);
+    set_list(&mut message, &diagnostics.gauges);
     message
 }
 
@@ -69,6 +70,7 @@ pub(crate) fn read_diagnostics(data: &[u8]) -> Result<(Diagnostics, Option<u64>)
     diagnostics.materials = read_list::<MaterialDiagnostics>(&message);
     diagnostics.groups = read_list::<GroupDiagnostics>(&message);
     diagnostics.walls = read_list::<WallForce>(&message);
+    diagnostics.gauges = read_list::<GaugeReading>(&message);
     let hash = u64::from_str_radix(&text(&message, STATE_HASH_TAG), 16).ok();
     Ok((diagnostics, hash))
 }

@@ -2,7 +2,9 @@
 
 use prost_types::field_descriptor_proto::{Label, Type};
 use prost_types::{DescriptorProto, FieldDescriptorProto, FileDescriptorProto};
-use unipbd_core::observe::{Diagnostics, Entry, GroupDiagnostics, MaterialDiagnostics, Table, Value, WallForce};
+use unipbd_core::observe::{
+    Diagnostics, Entry, GaugeReading, GroupDiagnostics, MaterialDiagnostics, Table, Value, WallForce,
+};
 
 /// Package of all messages of our own.
 pub(super) const PACKAGE: &str = "unipbd";
@@ -14,8 +16,10 @@ pub(super) const NAME_TAG: u32 = 1;
 /// The messages of `/diagnostics`: that of a frame, then those of its entries.
 pub(super) fn messages() -> Vec<DescriptorProto> {
     let mut frame = message::<Diagnostics>(vec![field("state_hash", STATE_HASH_TAG, Type::String)]);
-    frame.field.extend([list::<MaterialDiagnostics>(), list::<GroupDiagnostics>(), list::<WallForce>()]);
-    vec![frame, entry::<MaterialDiagnostics>(), entry::<GroupDiagnostics>(), entry::<WallForce>()]
+    frame.field.extend([list::<MaterialDiagnostics>(), list::<GroupDiagnostics>()]);
+    frame.field.extend([list::<WallForce>(), list::<GaugeReading>()]);
+    let first = [frame, entry::<MaterialDiagnostics>(), entry::<GroupDiagnostics>()];
+    first.into_iter().chain([entry::<WallForce>(), entry::<GaugeReading>()]).collect()
 }
 
 /// A protobuf file of these messages.
@@ -57,7 +61,7 @@ fn kind(value: Value<'_>) -> Type {
     }
 }
 
-fn field(name: &str, tag: u32, kind: Type) -> FieldDescriptorProto {
+pub(super) fn field(name: &str, tag: u32, kind: Type) -> FieldDescriptorProto {
     FieldDescriptorProto {
         name: Some(name.to_owned()),
         number: i32::try_from(tag).ok(),

@@ -30,6 +30,8 @@ struct ChannelState {
 pub(crate) struct LogWriter<W: Write> {
     mcap: mcap::Writer<NoSeek<BufWriter<W>>>,
     channels: BTreeMap<Topic, ChannelState>,
+    /// Names of the gauges: fields of their messages.
+    gauges: Vec<String>,
     frames: u64,
 }
 
@@ -55,7 +57,7 @@ impl<W: Write> LogWriter<W> {
         })?;
         mcap.write_metadata(&Metadata { name: METADATA.to_owned(), metadata: header.to_metadata(fields) })?;
         mcap.flush()?;
-        Ok(LogWriter { mcap, channels: BTreeMap::new(), frames: 0 })
+        Ok(LogWriter { mcap, channels: BTreeMap::new(), gauges: header.gauges.clone(), frames: 0 })
     }
 
     /// Writes a frame and flushes, so that a crash later loses nothing of it.
@@ -73,7 +75,7 @@ impl<W: Write> LogWriter<W> {
     /// The channel of a topic, made on first use, and the number of the next message on it.
     fn channel(&mut self, topic: Topic) -> McapResult<(u16, u32)> {
         if !self.channels.contains_key(&topic) {
-            let (name, descriptors) = topic.schema();
+            let (name, descriptors) = topic.schema(&self.gauges);
             let schema = self.mcap.add_schema(&name, "protobuf", &descriptors)?;
             let id = self.mcap.add_channel(schema, &topic.name(), "protobuf", &BTreeMap::new())?;
             self.channels.insert(topic, ChannelState { id, messages: 0 });

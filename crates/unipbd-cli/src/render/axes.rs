@@ -101,7 +101,7 @@ impl Axes<'_> {
 }
 
 /// A round step that gives at most so many ticks.
-fn tick_step(span: f64, most: f64) -> f64 {
+pub(super) fn tick_step(span: f64, most: f64) -> f64 {
     let least = span / most.max(1.0);
     let length = round_length(least);
     [1.0, 2.0, 2.5, 5.0]
@@ -111,7 +111,7 @@ fn tick_step(span: f64, most: f64) -> f64 {
         .unwrap_or(5.0 * length)
 }
 
-fn ticks(min: f64, max: f64, step: f64) -> impl Iterator<Item = f64> {
+pub(super) fn ticks(min: f64, max: f64, step: f64) -> impl Iterator<Item = f64> {
     let first = (min / step - 1e-9).ceil() as i64;
     let last = (max / step + 1e-9).floor() as i64;
     (first..=last).map(move |k| k as f64 * step)

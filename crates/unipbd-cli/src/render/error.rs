@@ -22,6 +22,8 @@ pub enum RenderError {
     Range,
     /// The output has an ending that names no format.
     Format(PathBuf),
+    /// The output of a plot has an ending that names no format.
+    PlotFormat(PathBuf),
     /// The output exists and must not be replaced.
     Exists(PathBuf),
     /// A setting of the job makes no sense.
@@ -72,6 +74,9 @@ impl fmt::Display for RenderError {
                 "cannot tell the format of {}: use NAME.png, NAME.svg, NAME.pdf, NAME_%04d.png, DIRECTORY/, NAME.gif, NAME.mp4 or NAME.html",
                 path.display()
             ),
+            RenderError::PlotFormat(path) => {
+                write!(f, "cannot tell the format of {}: use NAME.svg, NAME.pdf or NAME.png", path.display())
+            }
             RenderError::Exists(path) => write!(f, "{} exists: use --force to replace it", path.display()),
             RenderError::Job(what) => write!(f, "{what}"),
             RenderError::NoFrames => write!(f, "no frame lies in the chosen span of time"),

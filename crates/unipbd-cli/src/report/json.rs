@@ -23,7 +23,7 @@ impl<'a> From<&'a Diagnostics> for FrameLine<'a> {
 }
 
 /// Diagnostics under their names in the API: the quantities of the frame, then objects with those of each
-/// material, group and wall by name.
+/// material, group, wall and gauge by name.
 #[derive(Clone, Copy, Debug)]
 pub struct Numbers<'a>(pub &'a Diagnostics);
 
@@ -34,6 +34,7 @@ impl Serialize for Numbers<'_> {
         add_list(&mut map, &self.0.materials)?;
         add_list(&mut map, &self.0.groups)?;
         add_list(&mut map, &self.0.walls)?;
+        add_list(&mut map, &self.0.gauges)?;
         map.end()
     }
 }

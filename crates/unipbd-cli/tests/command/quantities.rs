@@ -10,9 +10,22 @@ use unipbd_core::observe::{Diagnostics, Entry, Table, Value};
 
 use crate::support::{DROP, Place};
 
-/// The drop in a tank whose walls are measured.
+/// One that reads something in each frame, and one that never does.
+const GAUGES: &str = "
+[[gauge]]
+name = \"front\"
+kind = \"front\"
+direction = [1.0, 0.0]
+
+[[gauge]]
+name = \"far\"
+kind = \"level\"
+at = [90.0, 0.0]
+";
+
+/// The drop in a tank whose walls are measured, and two gauges.
 fn scene() -> String {
-    DROP.replace("[[tank]]", "[[tank]]\nname = \"tank\"")
+    DROP.replace("[[tank]]", "[[tank]]\nname = \"tank\"") + GAUGES
 }
 
 /// The diagnostics of the start and of each frame of the scene.
@@ -30,6 +43,7 @@ fn expected(path: &Path) -> Vec<Diagnostics> {
 fn json(value: Value<'_>) -> Json {
     match value {
         Value::Count(count) => count.into(),
+        // Null where it is not a number.
         Value::Number(number) => number.into(),
         Value::Word(word) => word.into(),
         Value::Vector(vector) => vec![vector.x, vector.y].into(),
@@ -53,6 +67,7 @@ fn check_line(object: &Json, diagnostics: &Diagnostics) {
     check_objects(object, &diagnostics.materials);
     check_objects(object, &diagnostics.groups);
     check_objects(object, &diagnostics.walls);
+    check_objects(object, &diagnostics.gauges);
 }
 
 #[test]

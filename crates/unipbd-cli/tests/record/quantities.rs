@@ -4,7 +4,9 @@ use std::fs;
 
 use prost_reflect::{DescriptorPool, DynamicMessage, Value as LogValue};
 use unipbd_cli::record::{Fields, Recorder};
-use unipbd_core::observe::{Diagnostics, Entry, GroupDiagnostics, MaterialDiagnostics, Table, Value, WallForce};
+use unipbd_core::observe::{
+    Diagnostics, Entry, GaugeReading, GroupDiagnostics, MaterialDiagnostics, Table, Value, WallForce,
+};
 
 use crate::support::{diagnostics, header, snapshot};
 
@@ -41,22 +43,41 @@ fn check_messages<T: Entry>(message: &DynamicMessage, entries: &[T]) {
     }
 }
 
-#[test]
-fn every_quantity_is_a_column_of_the_log_under_its_name() {
+/// A log of one frame.
+fn recorded() -> Vec<u8> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("run.mcap");
     let mut recorder = Recorder::create(&path, &header(), Fields::default()).unwrap();
     recorder.record(&snapshot(100, 3), Some(&expected()), None, &[]).unwrap();
     recorder.finish().unwrap();
-    let bytes = fs::read(&path).unwrap();
-    // The schema that the log carries is all that another reader knows.
-    let mut messages = mcap::MessageStream::new(&bytes).unwrap().map(Result::unwrap);
-    let message = messages.find(|message| message.channel.topic == "/diagnostics").unwrap();
+    fs::read(&path).unwrap()
+}
+
+/// A message by the schema that the log carries: it is all that another reader knows.
+fn decoded(message: &mcap::Message<'_>) -> DynamicMessage {
     let schema = message.channel.schema.as_ref().unwrap();
     let pool = DescriptorPool::decode(&schema.data[..]).unwrap();
-    let message = DynamicMessage::decode(pool.get_message_by_name(&schema.name).unwrap(), &message.data[..]).unwrap();
+    DynamicMessage::decode(pool.get_message_by_name(&schema.name).unwrap(), &message.data[..]).unwrap()
+}
+
+#[test]
+fn every_quantity_is_a_column_of_the_log_under_its_name() {
+    let bytes = recorded();
+    let mut messages = mcap::MessageStream::new(&bytes).unwrap().map(Result::unwrap);
+    let message = decoded(&messages.find(|message| message.channel.topic == "/diagnostics").unwrap());
     check_message(&message, &expected());
     check_messages::<MaterialDiagnostics>(&message, &expected().materials);
     check_messages::<GroupDiagnostics>(&message, &expected().groups);
     check_messages::<WallForce>(&message, &expected().walls);
+    check_messages::<GaugeReading>(&message, &expected().gauges);
+}
+
+#[test]
+fn gauges_are_a_topic_of_plain_numbers_under_their_names() {
+    let bytes = recorded();
+    let mut messages = mcap::MessageStream::new(&bytes).unwrap().map(Result::unwrap);
+    let message = decoded(&messages.find(|message| message.channel.topic == "/gauges").unwrap());
+    for gauge in expected().gauges {
+        assert_eq!(message.get_field_by_name(&gauge.name).unwrap().as_f64(), Some(gauge.value), "{}", gauge.name);
+    }
 }

@@ -119,6 +119,7 @@ fn topics_hold_as_many_messages_as_the_format_says() {
         ("/bodies", every),
         ("/boundary", 1),
         ("/diagnostics", every),
+        ("/gauges", every),
         ("/log", 4),
         ("/particles", every),
         ("/particles/columns", 3),

@@ -6,8 +6,8 @@ use unipbd_cli::record::Header;
 use unipbd_cli::snapshot::{Setting, Snapshot};
 use unipbd_core::Vector64;
 use unipbd_core::observe::{
-    Diagnostics, Event, GroupDiagnostics, Material, MaterialDiagnostics, Severity, SubstepReason, Table, Value,
-    WallForce, WallOutline,
+    Diagnostics, Event, GaugeReading, GroupDiagnostics, Material, MaterialDiagnostics, Severity, SubstepReason, Table,
+    Value, WallForce, WallOutline,
 };
 use unipbd_core::phase::Phase;
 use unipbd_core::rigid::{Body, BodyKind, CollisionFilter, Surface};
@@ -36,6 +36,7 @@ pub fn header() -> Header {
         seed: u64::MAX - 3,
         fps: 60.0,
         gravity: [0.0, -9.81],
+        gauges: vec!["level_left".to_owned(), "force".to_owned()],
     }
 }
 
@@ -128,6 +129,8 @@ pub fn diagnostics(snapshot: &Snapshot, frame: u32) -> Diagnostics {
     diagnostics.materials =
         ["water", "air"].map(|name| MaterialDiagnostics { name: name.to_owned(), ..filled(frame) }).to_vec();
     diagnostics.groups = vec![GroupDiagnostics { name: "density".to_owned(), ..filled(frame) }];
+    diagnostics.gauges =
+        ["level_left", "force"].map(|name| GaugeReading { name: name.to_owned(), ..filled(frame) }).to_vec();
     diagnostics.walls = vec![WallForce { name: "tank left".to_owned(), ..filled(frame) }];
     diagnostics
 }

@@ -67,13 +67,12 @@ pub(super) fn walls(scene: &Scene) -> Vec<Wall> {
         walls.push(Wall::half_plane(wall.point.into(), normal, surface).named(wall.name.clone()));
     }
     for tank in &scene.tank {
-        let sides = [Side::Left, Side::Right, Side::Bottom, Side::Top];
         let all = Wall::tank(tank.min.into(), tank.max.into(), Surface::with_friction(body_friction(tank.friction)));
         let name = |side: Side| match tank.name.is_empty() {
             true => String::new(),
             false => format!("{} {}", tank.name, side.name()),
         };
-        let closed = sides.into_iter().zip(all).filter(|(side, _)| !tank.open.contains(side));
+        let closed = Side::ALL.into_iter().zip(all).filter(|(side, _)| !tank.open.contains(side));
         walls.extend(closed.map(|(side, wall)| wall.named(name(side))));
     }
     for obstacle in &scene.obstacle {

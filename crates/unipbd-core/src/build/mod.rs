@@ -16,7 +16,7 @@ use crate::parallel::Parallelism;
 use crate::particles::{NewParticle, OptionalColumns, Particles};
 use crate::periodic::{Periodic, PeriodicAxis};
 use crate::phase::{MaterialIndex, Phase};
-use crate::rigid::Bodies;
+use crate::rigid::{Bodies, Waypoint, waypoints};
 use crate::rng::Rng;
 use crate::scene::{BodySolver, CheckedScene, Points, Problems, Scene, Slip, disc_points};
 use crate::sleep::LiquidSleep;
@@ -129,12 +129,14 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         pressure_scale,
         gravity: vector(scene.gravity.into()),
         exact_gravity: scene.gravity.into(),
+        shaking: shaking(scene),
         solid_walls: bodies::walls(scene),
         scene_bodies: rigid.as_ref().map_or(0, |rigid| rigid.views().len()),
         scene_mark: rigid.as_ref().map_or(0, RigidBodies::mark),
         no_bodies: no_bodies(scene),
         sample_material: seen.then(|| scene.materials().count() as MaterialIndex - 1),
         remake: fluids::remake(scene, seed, periodic),
+        gauges: scene.gauge.clone(),
         spacing: scene.spacing,
         frame_time: 1.0 / scene.fps,
         seed,
@@ -153,6 +155,13 @@ fn groups(
         groups.push(Box::new(ShapeMatching::new(rigid.members(), scene.spacing, scene.contacts.friction_rule)));
     }
     groups
+}
+
+/// The acceleration of a scene that is shaken, as a curve in the plane.
+fn shaking(scene: &Scene) -> Vec<Waypoint> {
+    let Some(table) = &scene.shaking.table else { return Vec::new() };
+    let [ax, ay] = table.columns().map(|(_, values)| values);
+    waypoints(&table.time, [ax, ay, &[]])
 }
 
 fn periodic(scene: &Scene) -> Periodic {

@@ -3,6 +3,7 @@
 use super::quantity::{Entry, Field, Quantity, Table, Value, entries, table};
 use crate::math::Vector64;
 use crate::phase::Phase;
+use crate::scene::GaugeKind;
 
 table! {
     /// The state of a run at one moment, in numbers. Computed when asked for, from the state alone.
@@ -55,7 +56,7 @@ table! {
         /// Kinetic energy.
         #[quantity(16, "J")]
         pub kinetic_energy: f64,
-        /// Potential energy in the uniform gravity of the scene, zero at the origin.
+        /// Potential energy in the uniform gravity of the scene and its shaking, zero at the origin.
         #[quantity(17, "J")]
         pub potential_energy: f64,
         /// Linear momentum.
@@ -86,6 +87,8 @@ table! {
         pub groups: Vec<GroupDiagnostics>,
         /// Per measured wall, in the order of the scene.
         pub walls: Vec<WallForce>,
+        /// Per gauge, in the order of the scene.
+        pub gauges: Vec<GaugeReading>,
     }
 }
 
@@ -134,6 +137,19 @@ entries! {
         /// Mean force of the contacts of rigid bodies over the last frame.
         #[quantity(6, "N")]
         pub contact_force: Vector64,
+    }
+}
+
+entries! {
+    gauges = 32;
+    /// The reading of a gauge.
+    pub struct GaugeReading {
+        /// Reading in the unit of its kind; not a number where there is nothing to read.
+        #[quantity(2)]
+        pub value: f64,
+        /// Kind: level and front [m], pressure [N/m], force [N], flow_rate [m^2/s].
+        #[quantity(3)]
+        pub kind: GaugeKind,
     }
 }
 
@@ -219,6 +235,17 @@ impl Field for SubstepReason {
     }
 }
 
+impl Field for GaugeKind {
+    fn value(&self) -> Value<'static> {
+        Value::Word(self.name())
+    }
+
+    fn set(&mut self, value: Value<'_>) {
+        let known = GaugeKind::ALL.into_iter().find(|kind| value == Value::Word(kind.name()));
+        *self = known.unwrap_or(*self);
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -246,8 +273,9 @@ mod tests {
         check::<MaterialDiagnostics>(2);
         check::<GroupDiagnostics>(2);
         check::<WallForce>(2);
+        check::<GaugeReading>(2);
         let tags: Vec<u32> = Diagnostics::QUANTITIES.iter().map(|quantity| quantity.tag).collect();
-        for taken in [22, MaterialDiagnostics::TAG, GroupDiagnostics::TAG, WallForce::TAG] {
+        for taken in [22, MaterialDiagnostics::TAG, GroupDiagnostics::TAG, WallForce::TAG, GaugeReading::TAG] {
             assert!(!tags.contains(&taken), "{taken} is the state hash or a list");
         }
     }

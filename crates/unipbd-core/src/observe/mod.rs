@@ -6,7 +6,7 @@ mod quantity;
 use crate::math::Vector64;
 use crate::phase::Phase;
 
-pub use diagnostics::{Diagnostics, GroupDiagnostics, MaterialDiagnostics, SubstepReason, WallForce};
+pub use diagnostics::{Diagnostics, GaugeReading, GroupDiagnostics, MaterialDiagnostics, SubstepReason, WallForce};
 pub use quantity::{Entry, Quantity, Table, Value};
 
 /// How grave an [`Event`] is.

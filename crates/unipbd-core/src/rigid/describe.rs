@@ -55,7 +55,21 @@ pub(crate) fn specification(description: &BodyDescription, name: String, positio
     }
 }
 
+/// The waypoints of columns of samples; those that are empty stand for zeros.
+pub(crate) fn waypoints(times: &[f64], [x, y, turn]: [&[f64]; 3]) -> Vec<Waypoint> {
+    let at = |column: &[f64], index: usize| column.get(index).copied().unwrap_or(0.0);
+    let waypoint = |(index, &time): (usize, &f64)| Waypoint {
+        time,
+        offset: Vector64::new(at(x, index), at(y, index)),
+        turn: at(turn, index).to_radians(),
+    };
+    times.iter().enumerate().map(waypoint).collect()
+}
+
 fn motion(description: &MotionDescription) -> Motion {
+    if let Some(table) = &description.table {
+        return Motion::Smooth(waypoints(&table.time, table.columns().map(|(_, values)| values)));
+    }
     if !description.path.is_empty() {
         let waypoint = |station: &Station| Waypoint {
             time: station.time,

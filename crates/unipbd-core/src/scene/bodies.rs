@@ -1,4 +1,4 @@
-use super::Slip;
+use super::{MotionDescription, Slip};
 use serde::{Deserialize, Serialize};
 
 /// Coulomb friction coefficient of bodies and walls by default.
@@ -141,45 +141,6 @@ pub enum RotationRule {
     Free,
     /// It keeps its angle.
     Locked,
-}
-
-/// Script of a kinematic body: the given motions add up.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields, default)]
-pub struct MotionDescription {
-    /// Constant velocity [m/s].
-    pub velocity: [f64; 2],
-    /// Constant angular velocity, counter-clockwise [degrees/s].
-    pub spin_deg: f64,
-    /// Largest displacement of an oscillation [m].
-    pub amplitude: [f64; 2],
-    /// Largest rotation of an oscillation [degrees].
-    pub swing_deg: f64,
-    /// Frequency of the oscillation [1/s].
-    pub frequency: f64,
-    /// Phase of the oscillation at time 0 [degrees].
-    pub phase_deg: f64,
-    /// Stations of a path by increasing time.
-    #[serde(skip_serializing_if = "Vec::is_empty")]
-    pub path: Vec<Station>,
-    /// Begins the path anew after its last station.
-    pub repeat_path: bool,
-}
-
-/// A station of a path.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
-#[serde(deny_unknown_fields)]
-pub struct Station {
-    /// When [s].
-    pub time: f64,
-    /// Displacement from the start [m].
-    #[serde(default)]
-    pub offset: [f64; 2],
-    /// Rotation from the start [degrees].
-    #[serde(default)]
-    pub turn_deg: f64,
 }
 
 /// More of the same body, in rows; `name` gets a number behind it.

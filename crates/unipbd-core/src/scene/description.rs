@@ -1,8 +1,9 @@
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Block, BodyDescription, ContactDescription, Disc, Emitter, Expect, Gas, HalfPlane, Heater, Injector,
-    JointDescription, LegacySettings, Liquid, Obstacle, Points, Rope, Sink, Smoke, Solid, SolverSettings, Tank, Wave,
+    Block, BodyDescription, ContactDescription, Disc, Emitter, Expect, Gas, Gauge, HalfPlane, Heater, Injector,
+    JointDescription, LegacySettings, Liquid, Obstacle, Points, Rope, Shaking, Sink, Smoke, Solid, SolverSettings,
+    Tank, Wave,
 };
 
 /// A whole scene. All quantities are in SI units; angles carry the suffix `_deg`.
@@ -32,6 +33,9 @@ pub struct Scene {
     /// Options of the papers and the program that this project grew from.
     #[serde(skip_serializing_if = "LegacySettings::is_default")]
     pub legacy: LegacySettings,
+    /// An acceleration that is added to gravity over time.
+    #[serde(skip_serializing_if = "no_shaking")]
+    pub shaking: Shaking,
     /// The air around an open scene.
     pub environment: Environment,
     /// Periodic axes and the region outside which particles are removed.
@@ -92,6 +96,9 @@ pub struct Scene {
     /// Regions that warm or cool gas.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     pub heater: Vec<Heater>,
+    /// Numbers that a run reads of itself, once per frame.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub gauge: Vec<Gauge>,
     /// What a run is expected to do.
     #[serde(skip_serializing_if = "is_default")]
     pub expect: Expect,
@@ -110,6 +117,7 @@ impl Default for Scene {
             solver: SolverSettings::default(),
             contacts: ContactDescription::default(),
             legacy: LegacySettings::default(),
+            shaking: Shaking::default(),
             environment: Environment::default(),
             domain: Domain::default(),
             view: View::default(),
@@ -131,9 +139,14 @@ impl Default for Scene {
             injector: Vec::new(),
             sink: Vec::new(),
             heater: Vec::new(),
+            gauge: Vec::new(),
             expect: Expect::default(),
         }
     }
+}
+
+fn no_shaking(shaking: &Shaking) -> bool {
+    *shaking == Shaking::default()
 }
 
 fn is_default(expect: &Expect) -> bool {

@@ -96,6 +96,9 @@ pub enum Side {
 }
 
 impl Side {
+    /// All sides.
+    pub const ALL: [Side; 4] = [Side::Left, Side::Right, Side::Bottom, Side::Top];
+
     /// The word for it.
     pub const fn name(self) -> &'static str {
         match self {

@@ -121,6 +121,7 @@ impl Solver {
         // Ids may differ from before, so the old generation number must not be reused.
         let generation = generation.max(state.clock.generation) + 1;
         world.clock = Clock { generation, ..state.clock };
+        world.shake(world.clock.time);
         world.parts.particles.clone_from(&state.particles);
         self.on_threads(|world| {
             if replanned {

@@ -3,9 +3,12 @@
 use std::time::Duration;
 
 use super::Solver;
+use super::world::World;
+use crate::bytes::held;
 use crate::math::Real;
-use crate::observe::{Event, WallForce, WallOutline};
+use crate::observe::{Event, GaugeReading, WallForce, WallOutline};
 use crate::phase::{MaterialIndex, Phase};
+use crate::pressure_grid::PressureGrid;
 use crate::sources::EmitterReading;
 
 /// Read access common to a solver and the view of its substep.
@@ -75,7 +78,7 @@ impl Solver {
         self.world.parts.frame_time
     }
 
-    /// Gravity [m/s^2].
+    /// Gravity [m/s^2], without what `shaking` adds to it.
     pub fn gravity(&self) -> crate::math::Vector64 {
         self.world.parts.exact_gravity
     }
@@ -167,6 +170,12 @@ impl Solver {
         self.world.wall_forces()
     }
 
+    /// Readings of the gauges of the scene now, as [`diagnostics`](Solver::diagnostics) has them; not a number where a
+    /// gauge has nothing to read, as pressures and forces before the first frame.
+    pub fn gauges(&self) -> Vec<GaugeReading> {
+        self.look_on_threads(World::gauges)
+    }
+
     /// Joints by index, with their loads; those that are broken or taken away keep their place.
     pub fn joints(&self) -> Vec<crate::rigid::JointState> {
         self.world.parts.rigid.as_ref().map_or_else(Vec::new, |rigid| rigid.contacts.joints().collect())
@@ -185,5 +194,17 @@ impl Solver {
     /// Memory held by particles, lists, indexes, constraint groups and effects [bytes].
     pub fn memory_bytes(&self) -> usize {
         self.world.memory_bytes()
+    }
+}
+
+impl World {
+    pub fn memory_bytes(&self) -> usize {
+        let parts = &self.parts;
+        let shared = parts.particles.memory_bytes() + parts.neighbors.memory_bytes() + self.rows.memory_bytes();
+        let groups = parts.groups.iter().map(|group| group.memory_bytes()).sum::<usize>();
+        let effects = parts.effects.iter().map(|effect| effect.memory_bytes()).sum::<usize>();
+        let grid = parts.pressure_grid.as_ref().map_or(0, PressureGrid::memory_bytes) + parts.outlines.memory_bytes();
+        let room = grid + self.corrections.memory_bytes() + self.changes.memory_bytes() + held(&self.velocities);
+        shared + groups + effects + room
     }
 }

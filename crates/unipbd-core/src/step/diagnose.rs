@@ -77,6 +77,7 @@ impl World {
             contact_penetration: self.contact_penetration(),
             groups: groups.collect(),
             walls: self.wall_forces(),
+            gauges: self.gauges(),
             materials,
         }
     }

@@ -10,6 +10,8 @@ mod error;
 mod finite;
 mod first_body;
 mod fluid_parts;
+mod gauges;
+mod gravity;
 mod integrate;
 mod pipeline;
 mod query;

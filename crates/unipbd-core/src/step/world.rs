@@ -1,6 +1,5 @@
 //! The complete state of a run, and the frame loop.
 
-use crate::bytes::held;
 use std::ops::Range;
 use std::sync::OnceLock;
 
@@ -16,16 +15,16 @@ use super::{FrameReport, SolverError, Stage};
 use crate::constraints::{ConstraintGroup, CorrectionParts, Corrections, Needs, Substep};
 use crate::coupling::{RigidBodies, Ropes};
 use crate::effects::{Changes, Effect, SmokeAdvection};
-use crate::math::{Real, Vector, Vector64, vector};
+use crate::math::{Real, Vector, Vector64};
 use crate::neighbors::{Neighbors, SavedList, SearchPositions};
 use crate::observe::{Event, Material};
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
 use crate::phase::MaterialIndex;
 use crate::pressure_grid::PressureGrid;
-use crate::rigid::Wall;
+use crate::rigid::{Wall, Waypoint};
 use crate::rows::RowIndex;
-use crate::scene::Scene;
+use crate::scene::{Gauge, Scene};
 use crate::sleep::LiquidSleep;
 use crate::sources::{EmitterSystem, RemovalRules};
 use crate::walls::{Outlines, Walls};
@@ -68,8 +67,10 @@ pub(crate) struct Parts {
     /// rest lattice is slightly too small, and the multipliers are too large by the same factor.
     pub pressure_scale: f64,
     pub gravity: Vector,
-    /// The same in double precision [m/s^2].
+    /// That of the scene or the last edit, without the shaking, in double precision [m/s^2].
     pub exact_gravity: Vector64,
+    /// Acceleration that is added to it: `offset` in m/s^2. Empty where the scene is not shaken.
+    pub shaking: Vec<Waypoint>,
     /// Walls as solids, in the order in which contacts number them.
     pub solid_walls: Vec<Wall>,
     /// Number of bodies in the scene, and a mark of them and their joints.
@@ -81,6 +82,8 @@ pub(crate) struct Parts {
     pub sample_material: Option<MaterialIndex>,
     /// Makes what fluids know of bodies, in a scene of fluids that began without bodies.
     pub remake: Option<Remake>,
+    /// What is read in each frame, in the order of the scene.
+    pub gauges: Vec<Gauge>,
     pub spacing: f64,
     pub frame_time: f64,
     pub seed: u64,
@@ -144,6 +147,8 @@ pub(crate) struct World {
     pub(super) wall_impulses: Vec<Vector64>,
     /// Mean forces on the measured walls in the last frame [N].
     pub(super) wall_forces: Vec<Vector64>,
+    /// Whether a frame was run since the build or the last restore: only then are the forces on walls known.
+    pub(super) loads_known: bool,
 }
 
 impl World {
@@ -171,21 +176,12 @@ impl World {
             hooked: false,
             wall_impulses: Vec::new(),
             wall_forces: Vec::new(),
+            loads_known: false,
         };
         world.clear_wall_impulses();
         world.wall_forces.clone_from(&world.wall_impulses);
         world.replan();
         world
-    }
-
-    /// Changes gravity [m/s^2]; everything wakes.
-    pub fn set_gravity(&mut self, gravity: Vector64) {
-        let parts = &mut self.parts;
-        (parts.gravity, parts.exact_gravity) = (vector(gravity), gravity);
-        for force in parts.forces.iter_mut().filter(|force| force.factor != 0.0) {
-            *force = BodyForce::new(gravity, force.factor, force.thermal);
-        }
-        parts.effects.iter_mut().for_each(|effect| effect.set_gravity(vector(gravity)));
     }
 
     fn clear_wall_impulses(&mut self) {
@@ -263,6 +259,8 @@ impl World {
             self.budget.begin_frame();
             (self.iterated, self.stepped) = (0, 0);
             self.parts.rigid.iter_mut().for_each(|rigid| rigid.bodies.begin_frame());
+            self.shake(self.clock.time);
+            self.wake_shaken();
             self.run_all(|plan| &plan.begin)?;
             if !self.sleeps() {
                 let before = self.clock.dt;
@@ -300,6 +298,7 @@ impl World {
     /// The stages of the substep.
     pub fn finish_substep(&mut self) -> Result<(), SolverError> {
         self.wake_what_hooks_moved();
+        self.shake(self.clock.time + 0.5 * self.clock.dt);
         self.substep()?;
         self.clock.step += 1;
         self.clock.done += 1;
@@ -314,9 +313,11 @@ impl World {
         self.budget.end_frame(self.clock.substeps);
         let inverse = 1.0 / self.parts.frame_time;
         self.wall_forces = self.wall_impulses.iter().map(|impulse| *impulse * inverse).collect();
+        self.loads_known = true;
         self.clock.done = 0;
         self.clock.frame += 1;
         self.clock.time = self.clock.frame as f64 * self.parts.frame_time;
+        self.shake(self.clock.time);
         self.clock.list_builds = (self.parts.neighbors.builds() - begun.builds) as u32;
         Ok(FrameReport {
             substeps: self.clock.substeps,
@@ -329,6 +330,7 @@ impl World {
 
     /// Rebuilds the list of a saved state, and discards earlier measurements.
     pub fn restore_list(&mut self, list: &SavedList) {
+        self.loads_known = false;
         self.measured = Measured::default();
         self.parts.neighbors.restore(&self.parts.particles, list, self.parts.parallelism);
         if let Some(sleep) = &mut self.parts.sleep {
@@ -364,15 +366,5 @@ impl World {
             outlines: &parts.outlines,
             parallelism: parts.parallelism,
         }
-    }
-
-    pub fn memory_bytes(&self) -> usize {
-        let parts = &self.parts;
-        let shared = parts.particles.memory_bytes() + parts.neighbors.memory_bytes() + self.rows.memory_bytes();
-        let groups = parts.groups.iter().map(|group| group.memory_bytes()).sum::<usize>();
-        let effects = parts.effects.iter().map(|effect| effect.memory_bytes()).sum::<usize>();
-        let grid = parts.pressure_grid.as_ref().map_or(0, PressureGrid::memory_bytes) + parts.outlines.memory_bytes();
-        let room = grid + self.corrections.memory_bytes() + self.changes.memory_bytes() + held(&self.velocities);
-        shared + groups + effects + room
     }
 }

@@ -46,6 +46,10 @@ class Builder:
         """Fills a disc [m] with particles of a material."""
         return self.add("disc", material=material, center=center, radius=radius, **values)
 
+    def add_gauge(self, name: str, kind: str, **values: Any) -> Table:
+        """Adds a gauge: ``kind`` is level, pressure, force, flow_rate or front; see `describe`."""
+        return self.add("gauge", name=name, kind=kind, **values)
+
     def add_particles(
         self,
         material: str,

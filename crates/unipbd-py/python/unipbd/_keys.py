@@ -67,8 +67,13 @@ class Keys:
     heater: Tables
     """Regions that warm or cool gas."""
 
+    gauge: Tables
+    """Numbers that a run reads of itself, once per frame."""
+
     domain: Table
     """Periodic axes and the region outside which particles are removed."""
+    shaking: Table
+    """An acceleration that is added to gravity over time."""
     environment: Table
     """The air around an open scene."""
     solver: Table

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 
 def _columns(diagnostics: Mapping[str, Any]) -> dict[str, Any]:
-    """The quantities of a frame with one column for each number, without those of materials, groups and walls."""
+    """The quantities of a frame with one column for each number, without those of materials, groups, walls and gauges."""
     columns = {f"count_{phase}": count for phase, count in diagnostics["counts"].items()}
     for name, value in diagnostics.items():
         if isinstance(value, tuple):
@@ -62,6 +62,12 @@ class LogFrame:
     bodies: Mapping[str, Mapping[str, Any]] = field(repr=False)
     diagnostics: Mapping[str, Any] | None = field(repr=False)
     events: list[tuple[float, str, str]] = field(repr=False)
+
+    @property
+    def gauges(self) -> dict[str, float]:
+        """Readings of the gauges by name, as `Simulation.gauges`."""
+        gauges = self.diagnostics["gauges"] if self.diagnostics is not None else {}
+        return {name: gauge["value"] for name, gauge in gauges.items()}
 
     def to_dict(self) -> dict[str, Any]:
         """The columns of the particles by name, two for vectors: for tables and data frames."""
@@ -169,11 +175,19 @@ class Log:
         names = list(rows[0]) if rows else []
         return {name: fixed(np.array([row[name] for row in rows])) for name in names}
 
+    def gauges(self) -> dict[str, npt.NDArray[np.float64]]:
+        """The ``time`` of all frames and the readings of each gauge by name, as arrays of shape (frames,)."""
+        rows = [{"time": frame.time, **frame.gauges} for frame in self if frame.diagnostics is not None]
+        names = list(rows[0]) if rows else []
+        return {name: fixed(np.array([row[name] for row in rows])) for name in names}
+
     def to_pandas(self) -> pandas.DataFrame:
-        """The numbers of all frames as a data frame indexed by time (needs pandas)."""
+        """The numbers of all frames as a data frame indexed by time, those of gauges as ``gauge_NAME`` (needs
+        pandas)."""
         import pandas
 
-        return pandas.DataFrame(self.diagnostics()).set_index("time")
+        gauges = {f"gauge_{name}": values for name, values in self.gauges().items() if name != "time"}
+        return pandas.DataFrame({**self.diagnostics(), **gauges}).set_index("time")
 
     def __repr__(self) -> str:
         count = "cut off" if self.truncated else f"{len(self)} frames"

@@ -173,7 +173,7 @@ class Observable(World):
         """The state in numbers: all quantities of docs/diagnostics.md by name.
 
         Vectors are tuples (x, y); ``counts`` has the particles by phase. ``materials``, ``groups`` (constraint
-        groups) and ``walls`` (those with a name) have a dict of quantities for each name.
+        groups), ``walls`` (those with a name) and ``gauges`` have a dict of quantities for each name.
         """
         return self._native.diagnostics()
 
@@ -186,6 +186,13 @@ class Observable(World):
         """
         walls: dict[str, dict[str, tuple[float, float]]] = self._native.diagnostics()["walls"]
         return {name: wall["force"] for name, wall in walls.items()}
+
+    @property
+    def gauges(self) -> dict[str, float]:
+        """Readings of the gauges of the scene now, in the unit of their kind: level and front [m], pressure [N/m],
+        force [N], flow rate [m^2/s]. NaN where a gauge has nothing to read, as pressures before the first frame.
+        """
+        return self._native.gauges()
 
     @property
     def density_error_max(self) -> float:

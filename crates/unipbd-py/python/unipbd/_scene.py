@@ -83,9 +83,11 @@ class Scene(Keys, Builder):
         return cls._of(data)
 
     @classmethod
-    def from_toml(cls, text: str, file_name: str = "scene.toml") -> Scene:
-        """Reads a scene from TOML text; `file_name` stands in messages."""
-        return cls._of(_native.parse_scene(text, file_name))
+    def from_toml(
+        cls, text: str, file_name: str = "scene.toml", folder: str | os.PathLike[str] = ""
+    ) -> Scene:
+        """Reads a scene from TOML text; `file_name` stands in messages, CSV files that it names lie in `folder`."""
+        return cls._of(_native.parse_scene(text, file_name, os.fspath(folder)))
 
     @classmethod
     def from_dict(cls, description: Mapping[str, Any]) -> Scene:

@@ -160,10 +160,22 @@ fn last_lines(last: &Diagnostics, content: &Content) -> Vec<String> {
         format!("    energy         {:.4e} J kinetic, {:.4e} J potential", last.kinetic_energy, last.potential_energy),
         format!("    largest speed  {:.3} m/s", last.speed_max),
     ];
+    lines.extend(last.gauges.iter().map(|gauge| {
+        let name = one_line(&gauge.name);
+        match gauge.value.is_nan() {
+            true => format!("    gauge {name}: nothing to read"),
+            false => format!("    gauge {name}: {} {}", rounded(gauge.value), gauge.kind.unit()),
+        }
+    }));
     if let Some(hash) = content.last_hash {
         lines.push(format!("    state hash     {hash:016x}"));
     }
     lines
+}
+
+/// A reading with five digits.
+fn rounded(value: f64) -> f64 {
+    format!("{value:.4e}").parse().unwrap_or(value)
 }
 
 fn object(log: &Log, content: &Content, size: u64) -> Value {

@@ -49,6 +49,10 @@ pub(super) fn check(checker: &mut Checker) {
         beyond(checker, path.then("mass"), body.mass.unwrap_or(1.0), MASSES, "in kg");
         pulls.push((path.then("gravity_factor"), body.gravity_factor * strength(scene.gravity)));
     }
+    if let Some(table) = &scene.shaking.table {
+        let [ax, ay] = [&table.ax, &table.ay].map(|values| largest(values));
+        pulls.push((KeyPath::key("shaking").then("table"), strength([ax, ay])));
+    }
     for (path, acceleration) in pulls {
         check_pull(checker, path, acceleration);
     }
@@ -69,6 +73,11 @@ fn beyond(checker: &mut Checker, path: KeyPath, value: f64, (least, most): (f64,
     if value > 0.0 {
         checker.range(path, value, Allowed::Between(least, most), hint);
     }
+}
+
+/// The largest amount of the values; those that are not finite are noted elsewhere.
+pub(super) fn largest(values: &[f64]) -> f64 {
+    values.iter().fold(0.0, |most: f64, value| most.max(value.abs()))
 }
 
 fn strength([x, y]: [f64; 2]) -> f64 {

@@ -19,6 +19,16 @@ impl BodyNames {
         let first = names.iter().take(HINTED).cloned().collect();
         BodyNames { all: names.into_iter().collect(), first }
     }
+
+    /// Whether there is a body of this name.
+    pub(super) fn has(&self, name: &str) -> bool {
+        self.all.contains(name)
+    }
+
+    /// The first names, for hints.
+    pub(super) fn first(&self) -> impl Iterator<Item = &str> {
+        self.first.iter().map(String::as_str)
+    }
 }
 
 pub(super) fn check(checker: &mut Checker) {
@@ -44,10 +54,10 @@ pub(super) fn check(checker: &mut Checker) {
 
 /// Notes the name of a body that does not exist.
 pub(super) fn check_body(checker: &mut Checker, path: KeyPath, name: &str, names: &BodyNames) {
-    if names.all.contains(name) {
+    if names.has(name) {
         return;
     }
-    let first: Vec<&str> = names.first.iter().map(String::as_str).collect();
+    let first: Vec<&str> = names.first().collect();
     let hint = match first.is_empty() {
         true => "the scene has no [[body]]".to_owned(),
         false => hint_for_unknown(name, &first, "bodies"),

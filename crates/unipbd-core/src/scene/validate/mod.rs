@@ -8,6 +8,7 @@ mod checker;
 mod environment;
 mod extremes;
 mod finite;
+mod gauges;
 mod geometry;
 mod joints;
 mod legacy;
@@ -39,6 +40,7 @@ impl Scene {
         legacy::check(&mut checker);
         pressure_grid::check(&mut checker);
         environment::check(&mut checker);
+        motion::check_shaking(&mut checker);
         materials::check(&mut checker);
         sources::check(&mut checker);
         walls::check(&mut checker);
@@ -46,6 +48,7 @@ impl Scene {
         joints::check(&mut checker);
         regions::check(&mut checker);
         ropes::check(&mut checker);
+        gauges::check(&mut checker);
         extremes::check(&mut checker);
         twins::check(&mut checker);
         size::check(&mut checker);

@@ -1,7 +1,8 @@
 //! Scripts of kinematic bodies.
 
 use super::checker::{Allowed, Checker, number};
-use crate::scene::{BodyDescription, BodyKind, KeyPath, MotionDescription};
+use super::names::excerpt;
+use crate::scene::{BodyDescription, BodyKind, KeyPath, MOST_SAMPLES, MotionDescription};
 
 pub(super) fn check(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {
     let Some(motion) = &body.motion else { return };
@@ -14,6 +15,48 @@ pub(super) fn check(checker: &mut Checker, path: &KeyPath, body: &BodyDescriptio
     checker.range(path.then("frequency"), motion.frequency, Allowed::NotNegative, hint);
     check_parts(checker, &path, motion);
     check_path(checker, &path, motion);
+    check_file(checker, &path, &motion.file);
+    if let Some(table) = &motion.table {
+        check_table(checker, &path.then("table"), &table.time, &table.columns());
+    }
+}
+
+/// The acceleration of the frame of reference.
+pub(super) fn check_shaking(checker: &mut Checker) {
+    let shaking = &checker.scene.shaking;
+    let path = KeyPath::key("shaking");
+    check_file(checker, &path, &shaking.file);
+    if let Some(table) = &shaking.table {
+        check_table(checker, &path.then("table"), &table.time, &table.columns());
+    }
+}
+
+/// Readers of scene files read what `file` names; what is left was read by none.
+fn check_file(checker: &mut Checker, path: &KeyPath, file: &str) {
+    if !file.is_empty() {
+        let message = format!("there are no files here, \"{}\" cannot be read", excerpt(file));
+        checker.problem(path.then("file"), message, "give the samples themselves as `table`");
+    }
+}
+
+fn check_table(checker: &mut Checker, path: &KeyPath, times: &[f64], columns: &[(&str, &[f64])]) {
+    let count = times.len();
+    if !(2..=MOST_SAMPLES).contains(&count) {
+        let message = format!("needs 2 to {MOST_SAMPLES} samples, found {count}");
+        return checker.problem(path.then("time"), message, "one time for each sample, in seconds");
+    }
+    if let Some(index) = times.windows(2).position(|two| two[1] <= two[0]) {
+        let message = format!("must increase, found {} after {}", number(times[index + 1]), number(times[index]));
+        checker.problem(path.then("time").then_index(index + 1), message, "sort the samples by time");
+    }
+    if columns.iter().all(|(_, values)| values.is_empty()) {
+        let names: Vec<&str> = columns.iter().map(|(name, _)| *name).collect();
+        checker.problem(path.clone(), "has nothing besides times", format!("add one or more of {}", names.join(", ")));
+    }
+    for (name, values) in columns.iter().filter(|(_, values)| !values.is_empty() && values.len() != count) {
+        let message = format!("has {} values for {count} times", values.len());
+        checker.problem(path.then(name), message, "one for each time");
+    }
 }
 
 /// An oscillation needs a frequency and an amplitude; a script is one kind of motion.
@@ -24,7 +67,9 @@ fn check_parts(checker: &mut Checker, path: &KeyPath, motion: &MotionDescription
     if swings && motion.frequency == 0.0 {
         checker.problem(path.clone(), "an oscillation without a frequency", "add frequency = 1.0, in 1/s");
     }
-    let parts = [("velocity or spin_deg", steady), ("an oscillation", swings), ("a path", follows)];
+    let sampled = motion.table.is_some();
+    let parts =
+        [("velocity or spin_deg", steady), ("an oscillation", swings), ("a path", follows), ("a table", sampled)];
     let given: Vec<&str> = parts.iter().filter(|(_, given)| *given).map(|(name, _)| *name).collect();
     if let [first, second, ..] = given[..] {
         let message = format!("a script is one kind of motion, found {first} and {second}");

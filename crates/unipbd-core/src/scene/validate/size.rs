@@ -1,6 +1,7 @@
 //! Bounds on the number of particles and on coordinates.
 
 use super::checker::{Checker, entries, number, rounded};
+use super::extremes::largest;
 use super::settings::LONGEST_DURATION;
 use crate::math::Vector64;
 use crate::phase::Phase;
@@ -171,10 +172,19 @@ fn points(scene: &Scene) -> Vec<(KeyPath, [f64; 2])> {
     }
     for (path, body) in entries("body", &scene.body) {
         add(&path, "position", body.position);
+        if let Some(table) = body.motion.as_ref().and_then(|motion| motion.table.as_ref()) {
+            let path = path.then("motion").then("table");
+            add(&path, "x", [largest(&table.x), 0.0]);
+            add(&path, "y", [0.0, largest(&table.y)]);
+        }
     }
     for (path, rope) in entries("rope", &scene.rope) {
         add(&path, "from", rope.from);
         add(&path, "to", rope.to);
+    }
+    for (path, gauge) in entries("gauge", &scene.gauge) {
+        gauge.at.into_iter().for_each(|point| add(&path, "at", point));
+        gauge.line.into_iter().flatten().for_each(|point| add(&path, "line", point));
     }
     let domain = &scene.domain;
     let extents = [("periodic_x", domain.periodic_x), ("periodic_y", domain.periodic_y)];
