@@ -2,7 +2,6 @@
 
 use clap::Args;
 
-use super::run::number;
 use crate::live::{DEFAULT_ADDRESS, LiveOptions};
 
 /// Viewers of a run.
@@ -33,5 +32,5 @@ impl LiveArgs {
 }
 
 fn speed(text: &str) -> Result<f64, String> {
-    crate::live::speed(number(text).unwrap_or(f64::NAN))
+    crate::live::speed(text.trim().parse().unwrap_or(f64::NAN))
 }

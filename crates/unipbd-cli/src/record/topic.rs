@@ -80,6 +80,7 @@ impl Topics {
     }
 
     /// Whether there are none.
+    #[cfg(feature = "live")]
     pub(crate) fn is_empty(self) -> bool {
         self.0 == 0
     }
