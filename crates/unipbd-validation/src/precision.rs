@@ -11,7 +11,7 @@ use crate::stamp::stamp;
 
 /// Heading of the section in the accuracy sheet.
 pub const HEADING: &str = "Single and double precision";
-/// Rest distance [m]: a power of two, so that walls and lattices lie at the same places in f32 far out too,
+/// Rest distance \[m]: a power of two, so that walls and lattices lie at the same places in f32 far out too,
 /// and what differs is the solver's doing.
 const SPACING: f64 = 0.125;
 /// How far from the origin far is \[spacings].

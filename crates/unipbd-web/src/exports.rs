@@ -199,7 +199,7 @@ pub unsafe extern "C" fn unipbd_column_length(run: *mut Session, column: usize) 
     unsafe { session(run).column(Column::ALL[column]).len() }
 }
 
-/// Fills the free places of a disc [m]: the number of particles, or -1 with an answer.
+/// Fills the free places of a disc \[m]: the number of particles, or -1 with an answer.
 ///
 /// # Safety
 /// As for the whole file.
@@ -210,7 +210,7 @@ pub unsafe extern "C" fn unipbd_pour(run: *mut Session, material: usize, x: f64,
     or_answer(poured.map(|count| count as i32), -1)
 }
 
-/// Takes hold of the body at a point [m]: its number, or -1.
+/// Takes hold of the body at a point \[m]: its number, or -1.
 ///
 /// # Safety
 /// As for the whole file.

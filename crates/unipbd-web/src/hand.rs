@@ -49,7 +49,7 @@ impl Hand {
     }
 }
 
-/// The least mass that a force at the end of an arm can feel [kg]: with it the spring is damped critically or more.
+/// The least mass that a force at the end of an arm can feel \[kg]: with it the spring is damped critically or more.
 fn felt_mass(body: &Body, arm: Vector64) -> f64 {
     let turning = if body.inertia > 0.0 { arm.length_squared() / body.inertia } else { 0.0 };
     1.0 / (1.0 / body.mass + turning)

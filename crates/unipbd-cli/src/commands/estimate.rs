@@ -97,7 +97,7 @@ impl Pilot {
         Pilot { first_frame: first_frame.unwrap_or(Ok(0)), frames }
     }
 
-    /// Wall-clock time of the whole run [s]: from here on a particle costs what it did in the second
+    /// Wall-clock time of the whole run \[s]: from here on a particle costs what it did in the second
     /// half of the pilot, when the number of substeps had settled.
     fn whole_run(&self, scene: &Scene) -> f64 {
         let Some(&(time, spent)) = self.frames.last() else { return 0.0 };

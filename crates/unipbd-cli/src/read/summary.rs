@@ -21,7 +21,7 @@ pub struct Totals {
 
 /// The footer: kind, length, two places in the file and a checksum.
 const FOOTER: u64 = 1 + 8 + 8 + 8 + 4;
-/// Largest summary that is read [bytes]: some hundred bytes for each frame of an hour.
+/// Largest summary that is read \[bytes]: some hundred bytes for each frame of an hour.
 const LARGEST: u64 = 256 << 20;
 
 /// Counts of messages and times of the first and the last one.

@@ -92,6 +92,7 @@ impl Images {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::math::Real;
 
     const STRIDE: usize = 8;
     const IMAGES: Images = Images { periods: [4, 2] };
@@ -114,7 +115,7 @@ mod tests {
         }
         IMAGES.fold(&mut column, STRIDE);
         let cells = (1..=2).flat_map(|j| (1..=4).map(move |i| j * STRIDE + i));
-        assert_eq!(cells.map(|cell| column[cell]).sum::<f32>(), 24.0);
+        assert_eq!(cells.map(|cell| column[cell]).sum::<Real>(), 24.0);
     }
 
     #[test]

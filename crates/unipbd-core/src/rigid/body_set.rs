@@ -264,7 +264,7 @@ impl Bodies {
         }
     }
 
-    /// Ends a frame of length `frame_time` [s]: updates mean loads and the readable state.
+    /// Ends a frame of length `frame_time` \[s]: updates mean loads and the readable state.
     pub fn finish_frame(&mut self, frame_time: f64) {
         for id in 0..self.len() {
             let fluid = std::mem::take(&mut self.fluid_loads[id]).scaled(1.0 / frame_time);

@@ -3,7 +3,7 @@
 use super::layout::{block_counts, disc_count, particle_counts};
 use super::{Emitter, Profile, Scene, SubstepLaw, Substeps};
 
-/// Memory per particle [byte]: columns, multipliers and about 20 stored neighbours.
+/// Memory per particle \[byte]: columns, multipliers and about 20 stored neighbours.
 pub const BYTES_PER_PARTICLE: u64 = 300;
 /// Rough time per particle and substep on one core \[s].
 pub const SECONDS_PER_PARTICLE_AND_SUBSTEP: f64 = 60e-9;

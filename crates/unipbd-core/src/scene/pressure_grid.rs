@@ -81,8 +81,11 @@ impl Scene {
         if let Some(name) = self.thin_wall() {
             return PressureGridChoice::off(format!("its cells are too wide for the wall that the body {name} is"));
         }
-        if !self.has_closed_tank() && !self.repeats() && self.materials().any(|material| material.is_two_sided()) {
+        if !self.has_closed_tank() && !self.is_endless() && self.materials().any(|material| material.is_two_sided()) {
             return PressureGridChoice::off("gas in the open does not keep its momentum with it");
+        }
+        if self.domain_repeats() && self.has_several_densities() {
+            return PressureGridChoice::off("in periodic domains liquids of several densities stay mixed with it");
         }
         let particles = self.most_particles();
         if particles < LEAST_PARTICLES {
@@ -97,8 +100,18 @@ impl Scene {
     }
 
     /// Whether the domain has no end along both axes.
-    fn repeats(&self) -> bool {
+    fn is_endless(&self) -> bool {
         self.domain.periodic_x.is_some() && self.domain.periodic_y.is_some()
+    }
+
+    /// Whether the domain repeats along an axis.
+    fn domain_repeats(&self) -> bool {
+        self.domain.periodic_x.is_some() || self.domain.periodic_y.is_some()
+    }
+
+    fn has_several_densities(&self) -> bool {
+        let mut masses = self.materials().filter(|m| m.phase().is_fluid()).map(|m| m.particle_mass(self.spacing));
+        masses.next().is_some_and(|first| masses.any(|mass| mass != first))
     }
 
     /// Cells of the pressure grid in each period, zero without one. `None` where its square cells, about two spacings wide,
@@ -141,7 +154,7 @@ impl Scene {
     /// The properties of the scene that the pressure grid does not support, and what to do about each.
     pub(crate) fn pressure_grid_obstacles(&self) -> Vec<(&'static str, &'static str)> {
         const OFF: &str = "write \"auto\" or \"off\": the particles alone carry the pressure of such a scene";
-        let periodic = self.domain.periodic_x.is_some() || self.domain.periodic_y.is_some();
+        let periodic = self.domain_repeats();
         let dry = !self.materials().any(|material| material.phase().is_fluid());
         let all = [
             (dry, "a scene without a fluid", OFF),

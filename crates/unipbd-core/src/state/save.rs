@@ -14,7 +14,7 @@ const BODIES: &str = "bodies";
 const ROPES: &str = "ropes";
 const GRAVITY: &str = "gravity";
 
-/// Farthest place that a state may hold [spacings]: a run that gets there has long been of no use.
+/// Farthest place that a state may hold \[spacings]: a run that gets there has long been of no use.
 const FARTHEST: f64 = 1e9;
 /// Longest substep of smoke \[s].
 const LONGEST_FRAME: f64 = 1e6;

@@ -19,7 +19,7 @@ const SETTLED: f64 = 1e-5;
 const PROJECTIONS: f64 = 100.0;
 /// Projections per layer of a liquid that is at most [`NARROW`] wide.
 const PROJECTIONS_PER_LAYER: f64 = 3.0;
-/// Width up to which walls lift a whole column [spacings]: the density of the rows next to walls is too high.
+/// Width up to which walls lift a whole column \[spacings]: the density of the rows next to walls is too high.
 const NARROW: f64 = 16.0;
 /// Part of a displacement that the next projection starts with.
 const MOMENTUM: Real = 0.9;

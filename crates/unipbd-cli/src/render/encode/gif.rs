@@ -19,7 +19,7 @@ pub struct GifOptions {
     pub colors: u16,
     /// Largest change of a channel's level that is not worth a new pixel.
     pub tolerance: u8,
-    /// Largest size [bytes]: quality, then the number of frames, is reduced until the file fits.
+    /// Largest size \[bytes]: quality, then the number of frames, is reduced until the file fits.
     pub size_limit: Option<u64>,
 }
 

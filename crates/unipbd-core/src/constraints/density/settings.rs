@@ -50,7 +50,7 @@ pub struct DensityMaterial {
     /// The same for kinematic particles, whose own response is missing from the denominator: their weak contacts must
     /// not throw other particles [1/(kg m^2)].
     pub scripted_response_min: Real,
-    /// Mass of a particle [kg]: times the pressure limit it bounds the multiplier.
+    /// Mass of a particle \[kg]: times the pressure limit it bounds the multiplier.
     pub mass: Real,
     /// How far it is shifted down the gradient of the kernel sum, to even out the arrangement [m^2].
     pub shifting: Real,

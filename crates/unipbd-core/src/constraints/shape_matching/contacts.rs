@@ -197,7 +197,7 @@ impl ShapeMatching {
         moved(touch.a) - touch.b.map_or(Vector64::ZERO, moved)
     }
 
-    /// The part of an overlap that a round removes [m]: all of the overlap that arose in this substep, and a part of
+    /// The part of an overlap that a round removes \[m]: all of the overlap that arose in this substep, and a part of
     /// the older overlap. Full removal would shoot bodies apart that start overlapped.
     fn depth(&self, touch: &Touch, now: Substep<'_>) -> f64 {
         let opened = self.relative(touch, now).dot(touch.normal);

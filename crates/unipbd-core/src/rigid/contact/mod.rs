@@ -190,7 +190,7 @@ impl Contacts {
         self.jacobi.parallelism = parallelism;
     }
 
-    /// Ends a frame of length `frame_time` [s]: mean forces on walls, and sleep. Call it before
+    /// Ends a frame of length `frame_time` \[s]: mean forces on walls, and sleep. Call it before
     /// [`Bodies::finish_frame`].
     pub fn finish_frame(&mut self, bodies: &mut Bodies, frame_time: f64) {
         // Sleeping bodies load their supports as they did when they fell asleep.

@@ -44,7 +44,7 @@ pub(super) struct Reach {
 }
 
 impl Reach {
-    /// Begins a frame of this length [s]: all bodies are searched in the next substep.
+    /// Begins a frame of this length \[s]: all bodies are searched in the next substep.
     pub fn begin_frame(&mut self, frame: f64) {
         (self.frame, self.elapsed, self.begun) = (frame, 0.0, false);
     }

@@ -5,7 +5,7 @@ use crate::scene::{KeyPath, Substeps};
 
 /// Spacings outside this range leave the reach of single precision in the kernels, which hold h^-4 \[m].
 const SPACING: (f64, f64) = (1e-6, 1e6);
-/// Longest run [s]: about 12 days, 60 million frames at the default rate.
+/// Longest run \[s]: about 12 days, 60 million frames at the default rate.
 pub const LONGEST_DURATION: f64 = 1e6;
 /// Output frames per second [1/s].
 pub const FRAME_RATES: (f64, f64) = (1e-3, 1e6);

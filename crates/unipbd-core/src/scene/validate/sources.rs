@@ -112,7 +112,7 @@ fn check_sheath_and_smoke(checker: &mut Checker, path: &KeyPath, emitter: &Emitt
     }
 }
 
-/// Farthest that anything may fly in a frame [spacings]: beyond, a digit is wrong.
+/// Farthest that anything may fly in a frame \[spacings]: beyond, a digit is wrong.
 const FARTHEST: f64 = 1e4;
 
 /// Notes a speed at the start that cannot be meant. Walls hold whatever is slower.

@@ -188,7 +188,7 @@ impl Walls {
         x
     }
 
-    /// Least extent of a box [m]: a shorter path in a substep cannot pass through one. Infinite without boxes.
+    /// Least extent of a box \[m]: a shorter path in a substep cannot pass through one. Infinite without boxes.
     pub(crate) fn thinnest(&self) -> Real {
         let extents = self.rectangles.iter().map(|rectangle| (rectangle.max - rectangle.min).min_element());
         extents.fold(Real::INFINITY, Real::min)
