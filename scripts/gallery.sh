@@ -25,6 +25,7 @@ moments() {
         closed_gas_liquid) echo 1.0 4.0 ;;
         closed_gas*) echo 1.5 3.5 ;;
         rope) echo 0.5 6.0 ;;
+        breaking_bridge) echo 0.6 3.9 ;;
         seed_*) echo 1.0 5.0 ;;
         smoke_ring_obstacle) echo 0.6 2.0 ;;
         soft_bodies) echo 0.65 6.0 ;;
