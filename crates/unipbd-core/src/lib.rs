@@ -1,4 +1,6 @@
 #![doc = include_str!("../README.md")]
+// Numbers of particles are f32 or, in unipbd-core-f64, f64 as all others.
+#![cfg_attr(feature = "f64", allow(clippy::useless_conversion, clippy::unnecessary_cast, clippy::misnamed_getters))]
 
 mod build;
 mod bytes;

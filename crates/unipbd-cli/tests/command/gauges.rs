@@ -70,6 +70,9 @@ fn plots_are_drawn_in_every_format() {
         let arguments = [&["plot", "gauges.mcap", "-o", name, "--from", "0.05"], &names[..]].concat();
         place.run(&arguments).exits(0);
         assert!(std::fs::read(place.path(name)).unwrap().starts_with(magic), "{name}");
+        // A plot of the same run is made anew; another file is kept.
+        place.run(&arguments).exits(0);
+        std::fs::write(place.path(name), "mine").unwrap();
         assert!(place.run(&arguments).exits(2).stderr().contains("--force"));
     }
     let object =
