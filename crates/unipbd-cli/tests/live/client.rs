@@ -75,10 +75,10 @@ impl Run {
         Run { child, url, folder, stderr }
     }
 
-    /// Ctrl-C; where there is none, the run is killed.
+    /// Ends the run as Ctrl-C does, by the signal that no shell ignores in the background; where there is none, kills it.
     pub fn interrupt(&mut self) {
         if cfg!(unix) {
-            Command::new("kill").args(["-INT", &self.child.id().to_string()]).status().unwrap();
+            Command::new("kill").args(["-TERM", &self.child.id().to_string()]).status().unwrap();
         } else {
             self.child.kill().unwrap();
         }

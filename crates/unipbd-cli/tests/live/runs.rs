@@ -33,14 +33,14 @@ fn without_viewers_a_live_run_ends_like_any_other() {
 
 #[cfg(unix)]
 #[test]
-fn control_c_closes_a_paused_run_and_its_viewers_hear_it() {
+fn a_signal_closes_a_paused_run_and_its_viewers_hear_it() {
     let mut run = Run::start(&["--paused"]);
     let mut viewer = Viewer::connect(&run.url);
     assert_eq!(viewer.step(2)["frame"], 2);
     run.interrupt();
     assert!(viewer.closes());
     let (code, _, errors) = run.end();
-    assert_eq!(code, Some(130), "{errors}");
+    assert_eq!(code, Some(143), "{errors}");
 }
 
 #[test]
