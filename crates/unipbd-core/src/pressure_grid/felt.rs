@@ -59,8 +59,8 @@ impl System {
         }
     }
 
-    /// Takes the mean out of the changes: without walls, the pressure changes no momentum, and does not move the centre of
-    /// mass.
+    /// Takes the mean out of the changes: without walls and surfaces, the pressure changes no momentum, and does not move
+    /// the centre of mass.
     pub fn keep_momentum(&mut self, lattice: &Lattice, fields: &Fields) {
         for (faces, sums) in self.faces.iter_mut().zip([&fields.left, &fields.lower]) {
             let (mut moved, mut mass) = ([0.0, 0.0], 0.0);

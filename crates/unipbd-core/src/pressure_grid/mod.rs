@@ -137,7 +137,7 @@ impl PressureGrid {
         solve(Accuracy { tolerance: LOOSER_MOVES * self.accuracy.tolerance, ..self.accuracy }, false);
         system.join_solutions(&self.lattice);
         system.difference(&self.lattice, &self.openings, multigrid.spans(), parallelism);
-        if self.openings.boundless {
+        if self.openings.boundless && self.system.is_full(&self.lattice) {
             self.system.keep_momentum(&self.lattice, self.transfer.fields());
         }
         self.push(particles, dt as Real, parallelism);

@@ -236,6 +236,11 @@ impl System {
         self.depth[cell] >= 0.0 && !self.masked.get(cell).is_some_and(|&masked| masked)
     }
 
+    /// Whether there is fluid in all cells.
+    pub fn is_full(&self, lattice: &Lattice) -> bool {
+        lattice.rows().all(|row| self.depth[row].iter().all(|&depth| depth >= 0.0))
+    }
+
     /// Sets the couplings of the liquid.
     pub fn couple(
         &self,
