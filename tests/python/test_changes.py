@@ -102,8 +102,8 @@ def test_what_is_wrong_is_named_and_changes_nothing() -> None:
     for change, expected in wrong:
         with pytest.raises(up.EditError, match=expected), sim.edit() as e:
             e.change_emitter("tap", on=False)
-            e.remove_rope(0)
             change(e)
+            e.remove_rope(0)
         assert sim.state_hash() == before and not sim.ropes[0].removed
 
 
@@ -116,7 +116,7 @@ def test_a_recording_goes_on_when_the_first_body_comes(tmp_path: object) -> None
         sim.step(3)
     frames = list(up.read_log(path))
     assert len(frames) == 7 and len(frames[-1].bodies) == 3
-    assert sim.render(f"{tmp_path}/frame.png", width=200) is None
+    assert sim.render(f"{tmp_path}/frame.png", width=200).shape[1:] == (200, 3)
     assert np.isfinite(frames[-1].positions).all()
 
 
