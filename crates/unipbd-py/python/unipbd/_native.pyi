@@ -29,7 +29,9 @@ __all__ = [
     "default_scene",
     "emitters",
     "estimate_scene",
+    "hold_live",
     "joints",
+    "live_viewers",
     "load_scene",
     "nearest",
     "parse_scene",
@@ -39,6 +41,8 @@ __all__ = [
     "ropes",
     "scene_schema",
     "scene_to_toml",
+    "start_live",
+    "stop_live",
     "take_contact_events",
     "thread_count",
     "wake",
@@ -89,12 +93,12 @@ def nearest(
     solver: Solver, point: Sequence[float], within: float, layers: int, sensors: bool, walls: bool
 ) -> tuple[tuple[int | None, int | None], float, tuple[float, float], tuple[float, float]] | None: ...
 def run_command(arguments: Sequence[str]) -> int: ...
-@final
 def start_live(simulation: Solver, address: str, speed: float, paused: bool, fields: str) -> str: ...
 def live_viewers(simulation: Solver) -> int: ...
 def hold_live(simulation: Solver, seconds: float | None) -> None: ...
 def stop_live(simulation: Solver) -> None: ...
 
+@final
 class Solver:
     def __new__(cls, description: dict[str, Any], seed: int | None, threads: int | None, settled: bool) -> Solver: ...
     def step(self, frames: int, hooks: Sequence[Callable[[Substep], None]]) -> None: ...
