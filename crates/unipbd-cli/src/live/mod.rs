@@ -105,7 +105,7 @@ impl Live {
         self.count_steps(simulation);
     }
 
-    /// Tells viewers that the run is over. The last frame stays, for those who come later too, while [`serve`](Self::serve)
+    /// Tells viewers that the run is over. The last frame stays, for those who come later too, while `serve`
     /// is called.
     pub fn end(&mut self, simulation: &Simulation) {
         let mut controls = self.shared.lock();
