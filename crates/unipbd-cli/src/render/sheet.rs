@@ -23,7 +23,7 @@ pub(super) struct Sheet {
 struct Layer {
     offset: [f32; 2],
     clip: Option<[f32; 2]>,
-    /// What it is cut to besides, by the nonzero rule.
+    /// A region that it is cut to besides, by the nonzero rule.
     region: Option<Path>,
     marks: Vec<Mark>,
 }

@@ -97,7 +97,7 @@ impl Still<'_> {
             self.setting.walls.iter().filter_map(|outline| Wall::new(outline, &self.camera)).collect();
         let region = region(&walls, &self.camera);
         for (passes, opacity) in layers {
-            // Soft phases alone: what else is behind a wall shall be seen.
+            // Soft phases alone: bodies and liquids behind a wall shall be seen.
             let soft = passes(Phase::Gas) || passes(Phase::Smoke);
             sheet.cut_to(region.clone().filter(|_| soft));
             let rows = (0..frame.positions.len()).filter(|&row| passes(frame.phases[row]));

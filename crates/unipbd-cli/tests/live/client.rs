@@ -92,7 +92,7 @@ impl Run {
         })
     }
 
-    /// Waits for the end; returns the exit code, standard output and what else was on standard error.
+    /// Waits for the end; returns the exit code, standard output, and the rest of standard error.
     pub fn end(mut self) -> (Option<i32>, String, String) {
         let mut errors = String::new();
         self.stderr.read_to_string(&mut errors).unwrap();
@@ -136,7 +136,7 @@ pub struct Viewer {
 }
 
 impl Viewer {
-    /// Connects, and hears what there is.
+    /// Connects, and reads the topics that are offered.
     pub fn connect(url: &str) -> Viewer {
         let mut request = url.into_client_request().unwrap();
         request.headers_mut().insert("Sec-WebSocket-Protocol", "foxglove.sdk.v1".parse().unwrap());

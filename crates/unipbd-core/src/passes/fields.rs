@@ -35,6 +35,15 @@ pub fn laplacian<K: Shape>(
     });
 }
 
+/// Position and field value.
+type Sample<M> = (M, M, M);
+
+#[inline(always)]
+fn sample<R: Rows>(rows: R, positions: &[Vector], field: &[Real]) -> Sample<R::Value> {
+    let (x, y) = rows.vectors(positions);
+    (x, y, rows.numbers(field))
+}
+
 #[derive(Clone, Copy)]
 struct Gradient<'a, K, S> {
     kernel: K,
@@ -44,13 +53,11 @@ struct Gradient<'a, K, S> {
 }
 
 impl<K: Shape, S: Space> Pass<2> for Gradient<'_, K, S> {
-    /// Position and field value.
-    type Own<M: Number> = (M, M, M);
+    type Own<M: Number> = Sample<M>;
 
     #[inline(always)]
     fn own<R: Rows>(&self, rows: R) -> Self::Own<R::Value> {
-        let (x, y) = rows.vectors(self.positions);
-        (x, y, rows.numbers(self.field))
+        sample(rows, self.positions, self.field)
     }
 
     #[inline(always)]
@@ -79,13 +86,11 @@ struct Laplacian<'a, K, S, const WEIGHTED: bool> {
 }
 
 impl<K: Shape, S: Space, const WEIGHTED: bool> Pass<1> for Laplacian<'_, K, S, WEIGHTED> {
-    /// Position and field value.
-    type Own<M: Number> = (M, M, M);
+    type Own<M: Number> = Sample<M>;
 
     #[inline(always)]
     fn own<R: Rows>(&self, rows: R) -> Self::Own<R::Value> {
-        let (x, y) = rows.vectors(self.positions);
-        (x, y, rows.numbers(self.field))
+        sample(rows, self.positions, self.field)
     }
 
     #[inline(always)]

@@ -1,7 +1,7 @@
 //! Scenes of bodies, built and stepped.
 
 use unipbd_core::scene::{BodyDescription, HalfPlane, Scene, SolverSettings, Substeps};
-use unipbd_core::{BuildOptions, Solver};
+use unipbd_core::{BuildOptions, Edit, Solver, State};
 
 pub const ALL: [Substeps; 4] = [Substeps::Auto, Substeps::Fixed(1), Substeps::Fixed(4), Substeps::Fixed(16)];
 
@@ -40,4 +40,32 @@ pub fn run(scene: &Scene, seconds: f64) -> Solver {
     let mut solver = build(scene);
     step(&mut solver, seconds);
     solver
+}
+
+/// Makes one edit after the other. After each of them, and from the state before all of them, a run that is restored goes
+/// on bit for bit.
+pub fn go_on_after_each(scene: &Scene, solver: &mut Solver, edits: impl IntoIterator<Item = Edit>) {
+    let early = solver.save();
+    for edit in edits {
+        solver.apply(&edit).expect("it is sound");
+        step(solver, 0.05);
+        let state = State::from_bytes(&solver.save().to_bytes()).expect("it is whole");
+        let options = BuildOptions { threads: Some(3), ..BuildOptions::default() };
+        let mut fresh = scene.build(options).expect("it is sound");
+        fresh.restore(&state).expect("it is a state of this scene");
+        go_on(&mut fresh, solver);
+    }
+    solver.restore(&early).expect("it is a state of this scene");
+    let mut fresh = build(scene);
+    fresh.restore(&early).expect("it is a state of this scene");
+    go_on(&mut fresh, solver);
+}
+
+fn go_on(one: &mut Solver, other: &mut Solver) {
+    for _ in 0..4 {
+        assert_eq!(one.step_frame(), other.step_frame());
+        assert_eq!(one.state_hash(), other.state_hash());
+    }
+    assert_eq!(one.bodies(), other.bodies());
+    assert_eq!((one.ropes(), one.joints(), one.stages()), (other.ropes(), other.joints(), other.stages()));
 }

@@ -1,9 +1,9 @@
 //! Ropes come, are cut and go while a run goes on.
 
-use super::common::{ALL, build, floored, free, named, step};
+use super::common::{ALL, build, floored, free, go_on_after_each, named, step};
+use unipbd_core::Solver;
 use unipbd_core::edit::Edit;
 use unipbd_core::scene::{Block, BodyDescription, Held, Link, Liquid, Rope, Scene, Solid, Substeps, Tank, Tethers};
-use unipbd_core::{BuildOptions, Solver, State};
 
 /// A rope from a nail in the world.
 fn line(from: [f64; 2], to: [f64; 2], body: Option<&str>) -> Rope {
@@ -91,14 +91,6 @@ fn a_rope_of_an_edit_is_that_of_the_scene() {
     assert_eq!((of_scene.ropes(), of_scene.joints()), (of_edit.ropes(), of_edit.joints()));
 }
 
-fn go_on(one: &mut Solver, other: &mut Solver) {
-    for _ in 0..4 {
-        assert_eq!(one.step_frame(), other.step_frame());
-        assert_eq!(one.state_hash(), other.state_hash());
-    }
-    assert_eq!((one.ropes(), one.joints(), one.stages()), (other.ropes(), other.joints(), other.stages()));
-}
-
 #[test]
 fn changed_ropes_are_saved_and_restored_bit_for_bit() {
     let dry = with_hemp(floored(Substeps::Auto, vec![ball("ball", [0.0, 1.0])]));
@@ -110,28 +102,16 @@ fn changed_ropes_are_saved_and_restored_bit_for_bit() {
     for scene in [dry, roped, wet] {
         let mut solver = build(&scene);
         step(&mut solver, 0.1);
-        let early = solver.save();
         let number = solver.ropes().len() as u32;
         let rod = Rope { link: Link::Rod, tethers: Tethers::None, ..line([0.3, 2.6], [0.6, 1.9], Some("new")) };
-        for edit in [
+        let edits = [
             Edit::new().add_body(ball("new", [0.6, 1.8])).add_rope(rod),
             Edit::new().add_rope(Rope { held: Held::Both, ..line([-0.8, 2.0], [-0.2, 2.0], None) }),
             Edit::new().cut_rope(number, 2),
             Edit::new().cut_rope(number + 1, 3).remove_rope(number),
             Edit::new().remove_body(solver.bodies().len() as u32).remove_rope(number + 1),
-        ] {
-            solver.apply(&edit).expect("it fits");
-            step(&mut solver, 0.05);
-            let state = State::from_bytes(&solver.save().to_bytes()).expect("it is whole");
-            let options = BuildOptions { threads: Some(3), ..BuildOptions::default() };
-            let mut fresh = scene.build(options).expect("it is sound");
-            fresh.restore(&state).expect("it is a state of this scene");
-            go_on(&mut fresh, &mut solver);
-        }
-        solver.restore(&early).expect("it is a state of this scene");
-        let mut fresh = build(&scene);
-        fresh.restore(&early).expect("it is a state of this scene");
-        go_on(&mut fresh, &mut solver);
+        ];
+        go_on_after_each(&scene, &mut solver, edits);
     }
 }
 

@@ -1,13 +1,13 @@
 //! Bodies get another shape while a run goes on.
 
-use super::common::{ALL, build, floored, free, named, step};
+use super::common::{ALL, build, floored, free, go_on_after_each, named, step};
 use unipbd_core::edit::{BodyChange, Edit};
 use unipbd_core::scene::{
     Block, BodyDescription, BodyKind, JointDescription, JointRule, Liquid, MotionDescription, PressureGridUse, Scene,
     Substeps, Tank,
 };
 use unipbd_core::shapes::Shape;
-use unipbd_core::{BuildOptions, Solver, State, Vector64};
+use unipbd_core::{Solver, Vector64};
 
 fn shape(shape: Shape) -> BodyChange {
     BodyChange { shape: Some(shape), ..BodyChange::default() }
@@ -135,35 +135,15 @@ fn changed_shapes_are_saved_and_restored_bit_for_bit() {
     for scene in [dry, pool(PressureGridUse::On, false), pool(PressureGridUse::Off, true)] {
         let mut solver = build(&scene);
         step(&mut solver, 0.3);
-        let early = solver.save();
-        for edit in [
+        let edits = [
             Edit::new().change_body(0, shape(triangle(0.7))),
             Edit::new().change_body(1, shape(Shape::Disc { radius: 0.25 })),
             Edit::new().change_body(0, shape(Shape::rectangle(0.5, 0.3))).add_body(cube("new", [1.0, 2.0])),
             Edit::new().change_body(0, shape(triangle(0.6))).remove_body(0),
             Edit::new().change_body(scene.body.len() as u32 - 1, shape(triangle(0.5))),
-        ] {
-            solver.apply(&edit).expect("it is sound");
-            step(&mut solver, 0.05);
-            let state = State::from_bytes(&solver.save().to_bytes()).expect("it is whole");
-            let options = BuildOptions { threads: Some(3), ..BuildOptions::default() };
-            let mut fresh = scene.build(options).expect("it is sound");
-            fresh.restore(&state).expect("it is a state of this scene");
-            go_on(&mut fresh, &mut solver);
-        }
-        solver.restore(&early).expect("it is a state of this scene");
-        let mut fresh = build(&scene);
-        fresh.restore(&early).expect("it is a state of this scene");
-        go_on(&mut fresh, &mut solver);
+        ];
+        go_on_after_each(&scene, &mut solver, edits);
     }
-}
-
-fn go_on(one: &mut Solver, other: &mut Solver) {
-    for _ in 0..4 {
-        assert_eq!(one.step_frame(), other.step_frame());
-        assert_eq!(one.state_hash(), other.state_hash());
-    }
-    assert_eq!(one.bodies(), other.bodies());
 }
 
 #[test]

@@ -21,7 +21,7 @@ use panel::{Frame, Panel};
 pub struct Curve {
     /// What the legend says.
     pub name: String,
-    /// What it is: it stands above a panel whose curves all are the same.
+    /// Name of the quantity: it stands above a panel whose curves all are the same.
     pub quantity: String,
     /// Unit; empty for counts, `1` for fractions.
     pub unit: String,

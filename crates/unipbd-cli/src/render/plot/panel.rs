@@ -1,4 +1,4 @@
-//! One panel of a plot: axes, curves, and a head with what they are.
+//! One panel of a plot: axes, curves, and a head with their names.
 
 use super::Curve;
 use crate::render::axes::{tick_step, ticks};
