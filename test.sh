@@ -18,6 +18,9 @@ esac
 passed=0
 failed=0
 skipped=0
+hashes=
+lacks_for_web=$(scripts/web.sh --missing)
+unset UNIPBD
 
 part() {
     local name="$1"
@@ -36,47 +39,79 @@ skip() {
     skipped=$((skipped + 1))
 }
 
+target=${CARGO_TARGET_DIR:-$PWD/target}
+
+# The command, as the Rust tests of this run left it: Cargo would compile it and the core again, for one package alone
+# has other features of its dependencies than the workspace.
+command_of_tests() {
+    [ -n "${UNIPBD:-}" ] && return
+    cargo build --quiet -p unipbd-cli && export UNIPBD="$target/debug/unipbd"
+}
+
+# The Rust tests leave the command and the example of the web crate behind.
+rust_tests() {
+    cargo test --workspace --no-fail-fast
+    local status=$?
+    [ ! -x "$target/debug/unipbd" ] || export UNIPBD="$target/debug/unipbd"
+    [ ! -x "$target/debug/examples/hashes" ] || hashes="$target/debug/examples/hashes"
+    return $status
+}
+
 # The shipped scenes as a user runs them, and their logs as others read them.
 logs() {
     local out=target/test-logs python=target/log-tests/bin/python
+    command_of_tests || return 1
     mkdir -p "$out"
     [ -x "$python" ] || python3 -m venv target/log-tests || return 1
     "$python" -m pip install --quiet --disable-pip-version-check -r tests/python/requirements.txt || return 1
     for scene in open_gas dam_break; do
-        cargo run --quiet -p unipbd-cli -- "scenes/$scene.toml" -o "$out/$scene.mcap" --force || return 1
+        "$UNIPBD" "scenes/$scene.toml" -o "$out/$scene.mcap" --force || return 1
     done
     "$python" tests/python/check_log.py "$out/open_gas.mcap" "$out/dam_break.mcap" || return 1
     [ -n "$full" ] || return 0
     # What the viewer shows of scenes with gas, liquids, bodies and heaps.
     for scene in floating_bodies everything pyramid; do
-        cargo run --quiet -p unipbd-cli -- "scenes/$scene.toml" -o "$out/$scene.mcap" --force || return 1
+        "$UNIPBD" "scenes/$scene.toml" -o "$out/$scene.mcap" --force || return 1
     done
     "$python" tests/python/check_view.py "$out"/{open_gas,dam_break,floating_bodies,everything,pyramid}.mcap
 }
 
 # Pages that play a run, in a headless browser from the npm registry.
 replay() {
-    cargo build --quiet -p unipbd-cli || return 1
+    command_of_tests || return 1
     npm --prefix tests/browser ci --silent --no-audit --no-fund || return 1
-    UNIPBD_COMMAND="${CARGO_TARGET_DIR:-$PWD/target}/debug/unipbd" npm --prefix tests/browser run replay --silent
+    UNIPBD_COMMAND="$UNIPBD" npm --prefix tests/browser run replay --silent
+}
+
+can_build_web() { [ -z "$lacks_for_web" ] && command -v npm >/dev/null; }
+
+# Builds the WebAssembly module beside what follows: its linker and the Python tests use one processor each.
+begin_web() {
+    mkdir -p "$target"
+    scripts/web.sh >"$target/web-build.txt" 2>&1 &
+    web_build=$!
 }
 
 # The WebAssembly module in Node and in a headless browser, beside native runs; the npm package.
 web() {
-    local out="${CARGO_TARGET_DIR:-$PWD/target}" profile=debug
-    scripts/web.sh || return 1
+    wait "$web_build" || { cat "$target/web-build.txt"; return 1; }
     # Times are compared with those of a build for release in the full tier alone.
-    cargo build --quiet -p unipbd-web --example hashes ${full:+--release} || return 1
-    [ -z "$full" ] || profile=release
+    if [ -n "$full" ]; then
+        cargo build --quiet -p unipbd-web --example hashes --release || return 1
+        hashes="$target/release/examples/hashes"
+    elif [ -z "$hashes" ]; then
+        cargo build --quiet -p unipbd-web --example hashes || return 1
+        hashes="$target/debug/examples/hashes"
+    fi
     npm --prefix tests/browser ci --silent --no-audit --no-fund || return 1
-    UNIPBD_WEB="$out" UNIPBD_HASHES="$out/$profile/examples/hashes" npm --prefix tests/browser run web --silent
+    UNIPBD_WEB="$target" UNIPBD_HASHES="$hashes" npm --prefix tests/browser run web --silent
 }
 
 # What a release consists of, built here: archive of the command, crates, wheel and source distribution, checked.
 release() {
     local python=target/python-tests/bin/python out=target/release-check
     rm -rf "$out" && mkdir -p "$out" || return 1
-    scripts/archive.sh || return 1
+    env -u UNIPBD scripts/archive.sh || return 1
     cargo publish --dry-run --workspace --allow-dirty || return 1
     scripts/publish_f64.sh --dry-run || return 1
     "$python" -m pip install --quiet --disable-pip-version-check "maturin>=1.9,<2" "twine>=6" || return 1
@@ -103,14 +138,13 @@ miri() {
 }
 
 browsers() {
-    local lacks
     if ! command -v npm >/dev/null; then
         skip "replay page, module and page in browsers" "no npm here"
         return
     fi
     part "replay page in a browser" replay
-    if lacks=$(scripts/web.sh --missing); then
-        skip "module and page for browsers" "$lacks"
+    if [ -n "$lacks_for_web" ]; then
+        skip "module and page for browsers" "$lacks_for_web"
     else
         part "module and page for browsers" web
     fi
@@ -135,6 +169,7 @@ if [ "${1:-}" = --miri ]; then
 fi
 
 if [ "${1:-}" = --browsers ]; then
+    can_build_web && begin_web
     browsers
     summary
 fi
@@ -144,7 +179,7 @@ part lints cargo clippy --workspace --all-targets --quiet -- -D warnings
 part documentation env RUSTDOCFLAGS="-D warnings" cargo doc --workspace --no-deps --quiet
 optional spelling typos typos
 optional licences cargo-deny cargo deny check licenses bans sources
-part "Rust tests" cargo test --workspace --no-fail-fast
+part "Rust tests" rust_tests
 if [ -n "$full" ]; then
     miri
     part "long Rust tests" cargo test --workspace --no-fail-fast --release -- --include-ignored
@@ -155,6 +190,7 @@ if [ -n "$full" ]; then
         skip instructions "no valgrind, or no benches/instructions.json"
     fi
 fi
+can_build_web && begin_web
 if command -v python3 >/dev/null; then
     part logs logs
     part "Python tests" python3 tests/python/run.py $full

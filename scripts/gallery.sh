@@ -35,6 +35,17 @@ moments() {
     esac
 }
 
+# Day and commit of the pictures that are drawn now.
+now="$(date +%F), commit $(git rev-parse --short=7 HEAD)"
+[ -z "$(git status --porcelain -- crates scenes)" ] || now="$now with changes"
+
+# The same of the pictures of a scene: those not drawn now keep what the page says.
+drawn() {
+    case " $chosen " in "  " | *" $1 "*) echo "$now" ;; *) sed -n "/(gallery\/$1-[0-9]/,/^## /s/^Drawn \(.*\)\.\$/\1/p" "$work/before.md" ;; esac
+}
+chosen=$*
+cp docs/gallery.md "$work/before.md"
+
 # The value of a top-level key of a scene file.
 value() {
     sed -n "s/^$1 = \"\(.*\)\"\$/\1/p" "$2" | head -n 1
@@ -71,6 +82,8 @@ done
         for time in $(moments "$name"); do
             echo "![$name at $time s](gallery/$name-$time.png)"
         done
+        echo
+        echo "Drawn $(drawn "$name")."
     done
 } > docs/gallery.md
 

@@ -16,6 +16,10 @@ from documents import READ, ROOT, Folder, blocks, pages, runs
 PICTURE = re.compile(r"""(?:!\[[^\]]*\]\(|<img src=")([^)\s"]+)[)"]""")
 
 
+# Pages of measured figures; each says when they were measured, and from which commit.
+MEASURED = ["accuracy", "figure5", "figures", "gallery", "peers", "performance"]
+STAMP = re.compile(r"\b20\d\d-\d\d-\d\d, commit [0-9a-f]{7}\b")
+
 shell = pytest.mark.skipif(os.name == "nt", reason="the commands of the documents are those of a POSIX shell")
 
 
@@ -41,6 +45,15 @@ def test_rust_of_the_documents_is_in_the_doctests() -> None:
                and any(block.language == "rust" and block.reason is None for block in blocks(page))
                and f'include_str!("../../{name(page)}")' not in included]
     assert not missing
+
+
+@pytest.mark.parametrize("page", MEASURED)
+def test_a_page_of_figures_says_when_and_from_which_commit(page: str) -> None:
+    text = (ROOT / "docs" / f"{page}.md").read_text(encoding="utf-8")
+    assert STAMP.search(text)
+    # A page in sections that are renewed one by one has one in each section with a table.
+    sections = re.split(r"^## ", text, flags=re.MULTILINE)[1:] if page == "accuracy" else []
+    assert not [part.splitlines()[0] for part in sections if "\n|" in part and not STAMP.search(part)]
 
 
 @shell

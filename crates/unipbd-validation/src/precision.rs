@@ -180,8 +180,9 @@ pub fn parse(text: &str) -> Option<Vec<Reading>> {
 pub fn measure_double() -> Result<Vec<Reading>, Failure> {
     let cargo = std::env::var("CARGO").unwrap_or_else(|_| "cargo".to_owned());
     let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
-    let arguments = ["run", "--quiet", "--manifest-path", manifest, "--features", "f64", "--example", "precision"];
-    let output = Command::new(cargo).args(arguments).output().map_err(|error| Failure(error.to_string()))?;
+    let features = ["--no-default-features", "--features", "f64"];
+    let arguments = ["run", "--quiet", "--manifest-path", manifest, "--example", "precision"];
+    let output = Command::new(cargo).args(arguments).args(features).output().map_err(|error| Failure(error.to_string()))?;
     let readings = String::from_utf8(output.stdout).ok().filter(|_| output.status.success());
     readings
         .and_then(|text| parse(&text))
