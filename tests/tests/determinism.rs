@@ -69,9 +69,9 @@ density = 1500.0
 /// Kinds of scene and the frames after which to compare.
 fn scenes() -> [(&'static str, LoadedScene, u64); 4] {
     [
-        ("dam break", shipped("dam_break.toml"), 60),
-        ("open plume", shipped("open_gas.toml"), 50),
-        ("warm box", load(WARM_BOX), 30),
+        ("dam break", shipped("dam_break.toml"), 20),
+        ("open plume", shipped("open_gas.toml"), 30),
+        ("warm box", load(WARM_BOX), 10),
         ("bodies in water", load(SPLASH), 40),
     ]
 }

@@ -17,23 +17,30 @@ fn the_shipped_dam_break_stays_incompressible_and_gains_no_energy() {
     let scene = shipped("dam_break.toml").scene;
     assert_eq!((scene.spacing, scene.fps, scene.solver.substeps), (0.1, 60.0, Substeps::Fixed(8)));
     // Taken early, which is the default here, the constraint damps less: neither waves nor impacts.
-    for (gradients, worst) in [(GradientPoint::Early, 0.1), (GradientPoint::Predicted, 0.07)] {
-        RADII.into_iter().for_each(|radius| check_dam_break(&scene, radius, gradients, worst));
+    let early: &[f64] = &[-0.02, 0.0, 0.02];
+    RADII.into_iter().for_each(|radius| check_dam_break(&scene, radius, (GradientPoint::Early, early), 0.1));
+    if full_size("dam break, five runs each, gradients at both places") {
+        let runs: &[f64] = &[-0.02, -0.01, 0.0, 0.01, 0.02];
+        for (gradients, worst) in [(GradientPoint::Early, 0.1), (GradientPoint::Predicted, 0.07)] {
+            RADII.into_iter().for_each(|radius| check_dam_break(&scene, radius, (gradients, runs), worst));
+        }
     }
 }
 
-/// The worst C is that of one particle in one frame, 6 to 11 % by chance: that of the middle one of five runs counts.
-fn check_dam_break(scene: &Scene, radius: f64, gradients: GradientPoint, most: f64) {
+/// The worst C is that of one particle in one frame, 6 to 11 % by chance: that of the middle one of several runs counts,
+/// which differ a little in their relaxation.
+fn check_dam_break(scene: &Scene, radius: f64, (gradients, runs): (GradientPoint, &[f64]), most: f64) {
     let mut scene = scene.clone();
     (scene.solver.kernel_radius, scene.solver.gradients) = (radius, Some(gradients));
     let usual = scene.solver.relaxation_of_liquids(gradients);
-    let mut worst = [-0.02, -0.01, 0.0, 0.01, 0.02].map(|other| {
+    let mut worst_of = |other: &f64| {
         scene.solver.relaxation = Some(usual + other);
         worst_of_dam_break(&scene)
-    });
+    };
+    let mut worst: Vec<f64> = runs.iter().map(&mut worst_of).collect();
     worst.sort_by(f64::total_cmp);
     println!("h = {radius} dx, {gradients:?}");
-    bars("dam break 20 x 40, n = 8", |bars| bars.at_most("worst C", worst[2], most));
+    bars("dam break 20 x 40, n = 8", |bars| bars.at_most("worst C", worst[runs.len() / 2], most));
 }
 
 fn worst_of_dam_break(scene: &Scene) -> f64 {

@@ -22,6 +22,8 @@ pub enum Exit {
     HungUp = 129,
     /// Ctrl-C.
     Interrupted = 130,
+    /// The reader of standard output has seen enough: SIGPIPE.
+    PipeClosed = 141,
     /// The system or a person asked the process to end: SIGTERM.
     Terminated = 143,
 }
@@ -57,6 +59,8 @@ pub enum Label {
     Error,
     /// It says itself what it is.
     Own,
+    /// There is nothing to say.
+    None,
 }
 
 impl Failure {
@@ -84,11 +88,11 @@ impl std::fmt::Display for Failure {
 
 impl std::error::Error for Failure {}
 
-/// A closed or failing standard output; the reader of a pipe that has seen enough is no fault to report at length.
+/// A closed or failing standard output; the reader of a pipe that has seen enough is no fault to report.
 impl From<std::io::Error> for Failure {
     fn from(error: std::io::Error) -> Self {
         match error.kind() {
-            std::io::ErrorKind::BrokenPipe => Failure::io("standard output was closed"),
+            std::io::ErrorKind::BrokenPipe => Failure { label: Label::None, ..Failure::new(Exit::PipeClosed, "") },
             _ => Failure::io(format!("cannot write to standard output: {error}")),
         }
     }

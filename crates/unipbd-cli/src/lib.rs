@@ -53,6 +53,7 @@ fn report(console: &report::Console, failure: &exit::Failure) -> Exit {
     match failure.label {
         exit::Label::Error => console.error(&failure.message),
         exit::Label::Own => console.raw(&failure.message),
+        exit::Label::None => (),
     }
     failure.exit
 }

@@ -65,6 +65,7 @@ pub struct Outcome {
     pub solver: String,
     /// Processor time of the steps alone [s]: on one thread the wall-clock time of a machine that does nothing else.
     pub time: f64,
+    /// Steps, or substeps where frames consist of them.
     pub steps: u64,
     /// Density errors of all looks.
     pub errors: Errors,
@@ -98,13 +99,14 @@ struct Spent {
 }
 
 impl Spent {
-    /// Takes steps of the length that `step` returns from one time to another; only they are timed.
-    fn by(now: &mut f64, until: f64, mut step: impl FnMut() -> f64) -> Spent {
+    /// Calls `step` from one time to another, which returns how far it came [s] in how many steps; only it is timed.
+    fn by(now: &mut f64, until: f64, mut step: impl FnMut() -> (f64, u64)) -> Spent {
         let mut spent = Spent::default();
         while *now < until - 1e-9 {
             let begin = ProcessTime::now();
-            *now += step();
-            spent = Spent { time: spent.time + begin.elapsed().as_secs_f64(), steps: spent.steps + 1 };
+            let (length, steps) = step();
+            *now += length;
+            spent = Spent { time: spent.time + begin.elapsed().as_secs_f64(), steps: spent.steps + steps };
         }
         spent
     }

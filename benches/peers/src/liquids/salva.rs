@@ -46,7 +46,7 @@ impl Solver for Salva {
         let (world, dt) = (&mut self.world, self.dt);
         Ok(Spent::by(&mut self.now, until, || {
             world.step(dt as f32, &Vector2::new(0.0, -GRAVITY as f32));
-            dt
+            (dt, 1)
         }))
     }
 

@@ -51,10 +51,11 @@ fn section(case: &Case, bars: &mut Vec<(String, f64)>) -> Result<String, String>
     let settings = settings();
     let ours = race(case, &mut build(case, &settings)?)?;
     let is_best = |of: &Outcome| !ours.iter().any(|other| of.is_beaten_by(other));
-    let best: Vec<Setting> =
-        settings.into_iter().zip(&ours).filter(|(_, of)| is_best(of)).map(|(set, _)| set).collect();
+    let shown = |(setting, of): &(Setting, &Outcome)| setting.is_default() || is_best(of);
+    let shown: Vec<(Setting, &Outcome)> = settings.into_iter().zip(&ours).filter(shown).collect();
+    let best: Vec<Setting> = shown.iter().map(|(setting, _)| *setting).collect();
     let mut text = HEAD.to_owned();
-    ours.iter().filter(|of| is_best(of)).for_each(|of| text += &row(case, of, " | "));
+    shown.iter().for_each(|(_, of)| text += &row(case, of, " | "));
     let mut peers = Vec::new();
     for start in asked_for() {
         // Once more with each peer: so that both are timed in the same moments.

@@ -23,8 +23,8 @@ impl Solver for Unipbd {
     fn advance(&mut self, until: f64) -> Result<Spent, String> {
         let solver = &mut self.solver;
         Ok(Spent::by(&mut self.now, until, || {
-            solver.step_frame().expect("the case does not diverge");
-            solver.frame_time()
+            let frame = solver.step_frame().expect("the case does not diverge");
+            (solver.frame_time(), u64::from(frame.substeps))
         }))
     }
 
@@ -47,7 +47,14 @@ pub struct Setting {
 impl Setting {
     pub fn name(self) -> String {
         let name = if self.grid { "unipbd, pressure grid" } else { "unipbd" };
-        format!("{name}, h = {} dx, target {} %", self.radius, 100.0 * self.target)
+        let default = if self.is_default() { " (default)" } else { "" };
+        format!("{name}, h = {} dx, target {} %{default}", self.radius, 100.0 * self.target)
+    }
+
+    /// Whether a scene that sets nothing has it.
+    pub fn is_default(self) -> bool {
+        let default = SolverSettings::default();
+        self.grid && (self.radius, self.target) == (default.kernel_radius, default.target_compression)
     }
 }
 

@@ -42,6 +42,7 @@ Exit codes:
     5  a --stop-on condition was met, or an expectation of a scene does not hold
   129  the terminal was closed (SIGHUP)
   130  interrupted by Ctrl-C (the frame is finished and the log closed; press twice to quit at once)
+  141  the reader of standard output closed it, as head does (SIGPIPE)
   143  asked to end by SIGTERM, as by kill
 
 Environment:

@@ -20,7 +20,7 @@ Examples:
   unipbd run scenes/water_wheel.toml --live
 
 Exit codes: 0 done, 1 input or output, 2 arguments, 3 scene, 4 diverged, 5 --stop-on met or
---expect not held, 129 terminal closed, 130 Ctrl-C, 143 SIGTERM.";
+--expect not held, 129 terminal closed, 130 Ctrl-C, 141 closed pipe, 143 SIGTERM.";
 
 /// Changes to a scene.
 #[derive(Clone, Debug, Default, Args)]

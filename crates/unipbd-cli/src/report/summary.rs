@@ -158,12 +158,13 @@ impl Summary {
             Some(log) => {
                 let path = log.path.display();
                 let _ = writeln!(text, "  log            {path} ({})", bytes(log.bytes));
-                let lichtblick = match &log.layout {
-                    Some(layout) => format!("Lichtblick with the layout {}", layout.display()),
-                    None => format!("Lichtblick with the layout of unipbd layout {path} -o {}", beside(log, "json")),
+                let page = beside(log, "html");
+                let _ = writeln!(text, "  see it         unipbd render {path} -o {page}");
+                let layout = match &log.layout {
+                    Some(layout) => layout.display().to_string(),
+                    None => format!("unipbd layout {path} -o {}", beside(log, "json")),
                 };
-                let film = beside(log, "gif");
-                let _ = write!(text, "  open it        {lichtblick}; rerun {path}; unipbd render {path} -o {film}");
+                let _ = write!(text, "  in viewers     rerun {path}; Lichtblick, layout: {layout}");
             }
             None => text.truncate(text.trim_end().len()),
         }

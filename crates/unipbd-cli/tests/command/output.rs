@@ -87,7 +87,7 @@ fn no_color_wins_over_forced_colours() {
 }
 
 #[test]
-fn a_closed_pipe_ends_the_run_without_panic() {
+fn a_closed_pipe_ends_the_run_without_a_word() {
     let place = Place::new();
     let mut child = place
         .start(&["drop.toml", "--json", "--duration", "60", "-o", "cut.mcap"])
@@ -96,8 +96,8 @@ fn a_closed_pipe_ends_the_run_without_panic() {
         .spawn()
         .unwrap();
     drop(child.stdout.take());
-    let ended = crate::support::Ended(child.wait_with_output().unwrap()).exits(1);
-    assert!(ended.stderr().contains("standard output was closed"), "{}", ended.stderr());
+    let ended = crate::support::Ended(child.wait_with_output().unwrap()).exits(141);
+    assert!(!ended.stderr().contains("error"), "{}", ended.stderr());
     place.run(&["info", "cut.mcap"]).exits(0);
 }
 
