@@ -127,11 +127,6 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// The error norm of the case.
-    pub fn error(&self) -> f64 {
-        self.figures.first().map_or(f64::NAN, |figure| figure.value.abs())
-    }
-
     /// The value of this figure.
     pub fn figure(&self, what: &str) -> Option<f64> {
         self.figures.iter().find(|figure| figure.what == what).map(|figure| figure.value)

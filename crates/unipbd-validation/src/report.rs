@@ -8,7 +8,7 @@ use crate::document::with_section;
 use crate::notes::NOTES;
 use crate::plan::Line;
 use crate::runner::Failure;
-use crate::stamp::stamp;
+use crate::stamp::{machine, stamp};
 
 /// What came of a line of the sheet.
 pub struct Entry {
@@ -41,10 +41,11 @@ pub const INTRODUCTION: &str = "\
 Made by `cargo run --release -p unipbd-validation -- --full [CASE...]`; do not edit. Each case has a known \
 answer (`crates/unipbd-validation/src/cases`), and its section says when and from which commit it was measured. \
 Resolution is the number of particles along the length of the case (substeps per frame for bodies); the target is \
-`solver.target_compression`. Wall time is that of one thread of the machine this was made on; pair visits are two \
-passes per iteration over pi (h/dx)^2 neighbours.
+`solver.target_compression`. Wall time is that of one thread; pair visits are two passes per iteration over \
+pi (h/dx)^2 neighbours.
 
-A case that misses its band says so.
+A figure that misses its band says so, and each section counts them. A power near 0, or below, says that an error \
+does not fall with the spacing: often as it is small against its scatter, or as the target bounds it.
 ";
 
 /// Heading and body of the section of a case, from all of its entries.
@@ -52,12 +53,10 @@ pub fn section(entries: &[Entry]) -> Option<(String, String)> {
     let case = entries.first()?.line.case;
     let (grid, own): (Vec<&Entry>, Vec<&Entry>) = entries.iter().partition(|entry| entry.line.grid);
     let heading = case.name.replace('_', " ");
-    let mut text = format!("Truth: {}.\n\nMeasured {}.\n\n", case.truth, stamp());
+    let mut text = format!("Truth: {}.\n\nMeasured {}, on {}.\n\n{}\n\n", case.truth, stamp(), machine(), tally(entries));
     table(&mut text, &own);
     text.push_str(&work(&own));
-    if let Some(order) = order(&own) {
-        let _ = writeln!(text, "\nOrder of convergence of the first figure with the spacing: {order:.2}.");
-    }
+    text.push_str(&orders(&own));
     if !grid.is_empty() {
         let _ = writeln!(text, "\n### {heading} with the pressure grid\n");
         table(&mut text, &grid);
@@ -120,15 +119,33 @@ fn rows(text: &mut String, entry: &Entry) {
     }
 }
 
-/// Slope of log(error) over log(dx) at the default target.
-fn order(entries: &[&Entry]) -> Option<f64> {
-    let points: Vec<(f64, f64)> = entries
-        .iter()
-        .filter(|entry| entry.line.target == 0.01)
-        .filter_map(|entry| Some((-f64::from(entry.line.resolution).ln(), entry.result.as_ref().ok()?.error().ln())))
-        .filter(|(_, error)| error.is_finite())
-        .collect();
-    slope(&points)
+/// How many figures of a case hold their bands and how many miss them.
+fn tally(entries: &[Entry]) -> String {
+    let figures = entries.iter().filter_map(|entry| entry.result.as_ref().ok()).flat_map(|outcome| &outcome.figures);
+    let (hold, miss): (Vec<_>, Vec<_>) = figures.filter(|figure| !figure.band.is_open()).partition(|f| f.holds());
+    format!("Of {} figures with a band {} hold it.", hold.len() + miss.len(), hold.len())
+}
+
+/// How the errors of a case fall with the spacing at the default target: the powers of those that are known at three
+/// spacings or more.
+fn orders(entries: &[&Entry]) -> String {
+    let default: Vec<&&Entry> = entries.iter().filter(|entry| entry.line.target == 0.01).collect();
+    let outcomes = || default.iter().filter_map(|entry| Some((entry.line.resolution, entry.result.as_ref().ok()?)));
+    let Some((_, first)) = outcomes().next() else { return String::new() };
+    let errors = first.figures.iter().map(|figure| figure.what).filter(|what| what.contains("error"));
+    let order = |what: &str| {
+        let point = |(resolution, outcome): (u32, &Outcome)| {
+            let error = outcome.figure(what)?.abs();
+            (error.is_finite() && error > 0.0).then(|| (-f64::from(resolution).ln(), error.ln()))
+        };
+        let points: Vec<(f64, f64)> = outcomes().filter_map(point).collect();
+        (points.len() >= 3).then(|| slope(&points)).flatten()
+    };
+    let known: Vec<String> = errors.filter_map(|what| Some(format!("{what}: {:.2}", order(what)?))).collect();
+    if known.is_empty() {
+        return String::new();
+    }
+    format!("\nPowers of the spacing by which errors fall, at the target of 0.01: {}.\n", known.join("; "))
 }
 
 /// How the work grows with the depth, at each target, where a case tells its substeps per frame.
