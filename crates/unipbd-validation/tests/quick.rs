@@ -116,18 +116,26 @@ fn too_few_substeps_stay_finite_and_contained_and_enough_keep_the_energy() {
 #[test]
 fn single_precision_keeps_up_with_double_near_and_far_from_the_origin() {
     let single = precision::measure().unwrap_or_else(|failure| panic!("{failure}"));
+    assert_eq!(single.iter().filter(|s| !s.momentum.is_nan()).count(), 3);
+    for s in &single {
+        assert!(s.momentum.is_nan() || s.momentum <= 1e-5, "{s:?}");
+        assert!(s.gain <= 0.005, "{s:?}");
+    }
+    // The core is compiled once more for the other half.
+    if std::env::var_os("UNIPBD_FULL").is_none() {
+        println!("SKIP double precision: full size, run with UNIPBD_FULL=1");
+        return;
+    }
     let double = precision::measure_double().unwrap_or_else(|failure| panic!("{failure}"));
     assert_eq!(single.len(), double.len());
     for (s, d) in single.iter().zip(&double) {
         // Two tanks far apart have no middle that is near both.
         let bar = if s.scene.contains("apart") { 0.03 } else { 0.02 };
         assert!((s.mean - d.mean).abs() <= bar * d.mean, "{s:?} {d:?}");
-        assert!(s.momentum.is_nan() || s.momentum <= 1e-5, "{s:?}");
         assert!(d.momentum.is_nan() || d.momentum <= 1e-12, "{d:?}");
         assert!((s.energy - d.energy).abs() <= 0.01, "{s:?} {d:?}");
-        assert!(s.gain <= 0.005 && d.gain <= 0.005, "{s:?} {d:?}");
+        assert!(d.gain <= 0.005, "{d:?}");
     }
-    assert_eq!(single.iter().filter(|s| !s.momentum.is_nan()).count(), 3);
 }
 
 /// Scenes that once broke: made small by the fuzzer, kept as it wrote them.

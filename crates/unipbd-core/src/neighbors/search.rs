@@ -180,6 +180,11 @@ impl Neighbors {
         }
     }
 
+    /// Builds lists with at least this skin \[m] from now on; returns the least skin of before.
+    pub(crate) fn keep_skin(&mut self, least: Real) -> Real {
+        std::mem::replace(&mut self.least_skin, least)
+    }
+
     /// Lists built so far.
     pub fn builds(&self) -> u64 {
         self.list.builds()

@@ -21,6 +21,9 @@ const PROJECTIONS: f64 = 100.0;
 const PROJECTIONS_PER_LAYER: f64 = 3.0;
 /// Width up to which walls lift a whole column \[spacings]: the density of the rows next to walls is too high.
 const NARROW: f64 = 16.0;
+/// Skin of the neighbour list while particles settle \[spacings]: they move less than half of it in ten projections or
+/// more, and a new list costs more than the projection itself.
+const SKIN: f64 = 0.3;
 /// Part of a displacement that the next projection starts with.
 const MOMENTUM: Real = 0.9;
 /// The stages of a substep that a projection runs.
@@ -36,8 +39,11 @@ impl World {
         (self.clock.stiffness, self.clock.settling) = (1.0, true);
         if self.parts.particles.dense() > 0 {
             let still = SETTLED * self.parts.spacing;
+            let usual = self.parts.neighbors.keep_skin((SKIN * self.parts.spacing) as Real);
             (0..projections).find(|_| self.relax_once() <= still);
             zero_displacements(&mut self.parts.particles);
+            self.parts.neighbors.keep_skin(usual);
+            self.parts.neighbors.invalidate();
         }
         // The start can be observed like any other moment.
         self.find_neighbors_if_listed();
