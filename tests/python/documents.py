@@ -4,7 +4,7 @@ A page is run from top to bottom in a folder of its own, in which `unipbd` is th
 `scenes` and `recipes` the folders of the repository. Blocks mean:
 
 - `toml` with a first line `# NAME.toml`: a file, checked by `unipbd check`; with `# NAME.toml, continued`: more of it;
-- `sh`: run by bash, which stops at the first command that fails;
+- `sh`: run by bash, which stops at the first command that fails; with `--stop-on` in its last line it ends with exit code 5;
 - `python`: run by one interpreter per page, block after block;
 - `rust`: run by `cargo test --doc`, which `tests/src/lib.rs` tells about the page;
 - `text`, `bibtex`, `js`: something to read; `js` of the npm package is run by the tests of the browser.
@@ -53,6 +53,11 @@ class Block:
         found = next((text for text in REASONS if (self.reason or "").startswith(text)), None)
         return found is not None and re.search(REASONS[found], self.code) is not None
 
+    @property
+    def status(self) -> int:
+        """The exit code that it ends with: 5 where the last command stops on a condition."""
+        return 5 if "--stop-on" in self.code.strip().splitlines()[-1] else 0
+
 
 def pages() -> list[Path]:
     """Every document with blocks, those that commands write left out."""
@@ -93,9 +98,9 @@ class Folder:
         path = os.pathsep.join([str(commands), str(unipbd.parent), os.environ["PATH"]])
         self.environment = {**os.environ, "PATH": path, "MPLBACKEND": "Agg"}
 
-    def run(self, command: list[str]) -> str:
+    def run(self, command: list[str], status: int = 0) -> str:
         made = subprocess.run(command, cwd=self.place, env=self.environment, capture_output=True, text=True, timeout=300)
-        assert made.returncode == 0, f"exit code {made.returncode}\n{made.stdout[-3000:]}\n{made.stderr[-3000:]}"
+        assert made.returncode == status, f"exit code {made.returncode}\n{made.stdout[-3000:]}\n{made.stderr[-3000:]}"
         return made.stdout
 
     def toml(self, code: str) -> None:
@@ -116,7 +121,7 @@ class Folder:
                 if block.language == "toml":
                     self.toml(block.code)
                 elif block.language == "sh":
-                    printed += self.run(["bash", "-euo", "pipefail", "-c", block.code])
+                    printed += self.run(["bash", "-euo", "pipefail", "-c", block.code], block.status)
                 else:
                     # Files come from the shell blocks before it: the whole script so far would run them twice.
                     script.append(f"# line {block.line}\n{block.code}")
