@@ -29,7 +29,7 @@ READ = {"js", "json", "text", "bibtex", "{toctree}", "{include}", "{math}", "{au
 REASONS = {
     "unpublished": r"pip install|cargo (add|install)|conda install|unipbd-core = ",
     "hours long": r"--full|\./benches/|benches/|cargo (bench|run --release)|scripts/fuzz",
-    "minutes long": r"--full|benches/|scripts/|cargo (bench|run --release|test)|unipbd-validation|trajectories=1000",
+    "minutes long": r"--full|benches/|scripts/|cargo (bench|run --release|test)|unipbd-validation|dataset recipes/",
     "builds anew": r"cargo (install|build|publish)|pip install|maturin|scripts/web",
     "runs the tests": r"test\.sh|docs/build\.py|tests/python/run\.py",
     "needs a clone": r"git |cargo run --release",
