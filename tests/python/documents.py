@@ -31,7 +31,7 @@ REASONS = {
     "hours long": r"--full|\./benches/|benches/|cargo (bench|run --release)|scripts/fuzz",
     "minutes long": r"--full|benches/|scripts/|cargo (bench|run --release|test)|unipbd-validation|dataset recipes/",
     "builds anew": r"cargo (install|build|publish)|pip install|maturin|scripts/web",
-    "runs the tests": r"test\.sh|docs/build\.py|tests/python/run\.py",
+    "runs the tests": r"test\.sh|docs/build\.py|tests/python/run\.py|-m pytest",
     "needs a clone": r"git |cargo run --release",
     "needs another program": r"rerun|\.mp4|valgrind|jq|lichtblick",
 }
