@@ -4,8 +4,9 @@ A page is run from top to bottom in a folder of its own, in which `unipbd` is th
 `scenes` and `recipes` the folders of the repository. Blocks mean:
 
 - `toml` with a first line `# NAME.toml`: a file, checked by `unipbd check`; with `# NAME.toml, continued`: more of it;
+  with `# NAME.toml, a recipe` or `a sweep`: no scene, and not checked;
 - `sh`: run by bash, which stops at the first command that fails; with `--stop-on` in its last line it ends with exit code 5;
-- `python`: run by one interpreter per page, block after block;
+- `python`: run by one interpreter per page, block after block; with a first line `# NAME.py`: a file, run by itself;
 - `rust`: run by `cargo test --doc`, which `tests/src/lib.rs` tells about the page;
 - `text`, `bibtex`, `js`: something to read; `js` of the npm package is run by the tests of the browser.
 
@@ -52,6 +53,12 @@ class Block:
         """Whether it says why it is not run, and what it says fits what it does."""
         found = next((text for text in REASONS if (self.reason or "").startswith(text)), None)
         return found is not None and re.search(REASONS[found], self.code) is not None
+
+    @property
+    def script(self) -> str | None:
+        """The name of the file that a block of Python is."""
+        named = re.match(r"# (\S+\.py)\n", self.code)
+        return named[1] if named else None
 
     @property
     def status(self) -> int:
@@ -104,14 +111,19 @@ class Folder:
         return made.stdout
 
     def toml(self, code: str) -> None:
-        named = re.match(r"# (\S+\.toml)(, continued)?\n", code)
+        named = re.match(r"# (\S+\.toml)(, continued)?(, a (?:recipe|sweep))?\n", code)
         if named is None:
             assert sys.version_info < (3, 11) or __import__("tomllib").loads(code) is not None
             return
         path = self.place / named[1]
         before = path.read_text(encoding="utf-8") if named[2] else ""
         path.write_text(before + code, encoding="utf-8")
-        self.run(["unipbd", "check", named[1]])
+        if not named[3]:
+            self.run(["unipbd", "check", named[1]])
+
+    def script(self, name: str, code: str) -> str:
+        (self.place / name).write_text(code, encoding="utf-8")
+        return self.run([sys.executable, name])
 
     def all_of(self, page: Path) -> str:
         """Runs the page; what was printed."""
@@ -122,10 +134,12 @@ class Folder:
                     self.toml(block.code)
                 elif block.language == "sh":
                     printed += self.run(["bash", "-euo", "pipefail", "-c", block.code], block.status)
+                elif block.script:
+                    printed += self.script(block.script, block.code)
                 else:
                     # Files come from the shell blocks before it: the whole script so far would run them twice.
                     script.append(f"# line {block.line}\n{block.code}")
-                    last = not any(later.language == "python" for later in runs(page)[number + 1 :])
+                    last = not any(later.language == "python" and not later.script for later in runs(page)[number + 1 :])
                     printed += self.run([sys.executable, "-c", "\n".join(script)]) if last else ""
             except AssertionError as error:
                 raise AssertionError(f"{page.relative_to(ROOT)}, line {block.line}: {error}") from None
