@@ -4,8 +4,9 @@ A page is run from top to bottom in a folder of its own, in which `unipbd` is th
 `scenes` and `recipes` the folders of the repository. Blocks mean:
 
 - `toml` with a first line `# NAME.toml`: a file, checked by `unipbd check`; with `# NAME.toml, continued`: more of it;
-- `sh`: run by bash, which stops at the first command that fails;
-- `python`: run by one interpreter per page, block after block;
+  with `# NAME.toml, a recipe` or `a sweep`: no scene, and not checked;
+- `sh`: run by bash, which stops at the first command that fails; with `--stop-on` in its last line it ends with exit code 5;
+- `python`: run by one interpreter per page, block after block; with a first line `# NAME.py`: a file, run by itself;
 - `rust`: run by `cargo test --doc`, which `tests/src/lib.rs` tells about the page;
 - `text`, `bibtex`, `js`: something to read; `js` of the npm package is run by the tests of the browser.
 
@@ -29,9 +30,9 @@ READ = {"js", "json", "text", "bibtex", "{toctree}", "{include}", "{math}", "{au
 REASONS = {
     "unpublished": r"pip install|cargo (add|install)|conda install|unipbd-core = ",
     "hours long": r"--full|\./benches/|benches/|cargo (bench|run --release)|scripts/fuzz",
-    "minutes long": r"--full|benches/|scripts/|cargo (bench|run --release|test)|unipbd-validation|trajectories=1000",
+    "minutes long": r"--full|benches/|scripts/|cargo (bench|run --release|test)|unipbd-validation|dataset recipes/",
     "builds anew": r"cargo (install|build|publish)|pip install|maturin|scripts/web",
-    "runs the tests": r"test\.sh|docs/build\.py|tests/python/run\.py",
+    "runs the tests": r"test\.sh|docs/build\.py|tests/python/run\.py|-m pytest",
     "needs a clone": r"git |cargo run --release",
     "needs another program": r"rerun|\.mp4|valgrind|jq|lichtblick",
 }
@@ -52,6 +53,17 @@ class Block:
         """Whether it says why it is not run, and what it says fits what it does."""
         found = next((text for text in REASONS if (self.reason or "").startswith(text)), None)
         return found is not None and re.search(REASONS[found], self.code) is not None
+
+    @property
+    def script(self) -> str | None:
+        """The name of the file that a block of Python is."""
+        named = re.match(r"# (\S+\.py)\n", self.code)
+        return named[1] if named else None
+
+    @property
+    def status(self) -> int:
+        """The exit code that it ends with: 5 where the last command stops on a condition."""
+        return 5 if "--stop-on" in self.code.strip().splitlines()[-1] else 0
 
 
 def pages() -> list[Path]:
@@ -93,20 +105,25 @@ class Folder:
         path = os.pathsep.join([str(commands), str(unipbd.parent), os.environ["PATH"]])
         self.environment = {**os.environ, "PATH": path, "MPLBACKEND": "Agg"}
 
-    def run(self, command: list[str]) -> str:
+    def run(self, command: list[str], status: int = 0) -> str:
         made = subprocess.run(command, cwd=self.place, env=self.environment, capture_output=True, text=True, timeout=300)
-        assert made.returncode == 0, f"exit code {made.returncode}\n{made.stdout[-3000:]}\n{made.stderr[-3000:]}"
+        assert made.returncode == status, f"exit code {made.returncode}\n{made.stdout[-3000:]}\n{made.stderr[-3000:]}"
         return made.stdout
 
     def toml(self, code: str) -> None:
-        named = re.match(r"# (\S+\.toml)(, continued)?\n", code)
+        named = re.match(r"# (\S+\.toml)(, continued)?(, a (?:recipe|sweep))?\n", code)
         if named is None:
             assert sys.version_info < (3, 11) or __import__("tomllib").loads(code) is not None
             return
         path = self.place / named[1]
         before = path.read_text(encoding="utf-8") if named[2] else ""
         path.write_text(before + code, encoding="utf-8")
-        self.run(["unipbd", "check", named[1]])
+        if not named[3]:
+            self.run(["unipbd", "check", named[1]])
+
+    def script(self, name: str, code: str) -> str:
+        (self.place / name).write_text(code, encoding="utf-8")
+        return self.run([sys.executable, name])
 
     def all_of(self, page: Path) -> str:
         """Runs the page; what was printed."""
@@ -116,11 +133,13 @@ class Folder:
                 if block.language == "toml":
                     self.toml(block.code)
                 elif block.language == "sh":
-                    printed += self.run(["bash", "-euo", "pipefail", "-c", block.code])
+                    printed += self.run(["bash", "-euo", "pipefail", "-c", block.code], block.status)
+                elif block.script:
+                    printed += self.script(block.script, block.code)
                 else:
                     # Files come from the shell blocks before it: the whole script so far would run them twice.
                     script.append(f"# line {block.line}\n{block.code}")
-                    last = not any(later.language == "python" for later in runs(page)[number + 1 :])
+                    last = not any(later.language == "python" and not later.script for later in runs(page)[number + 1 :])
                     printed += self.run([sys.executable, "-c", "\n".join(script)]) if last else ""
             except AssertionError as error:
                 raise AssertionError(f"{page.relative_to(ROOT)}, line {block.line}: {error}") from None

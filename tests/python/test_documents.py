@@ -86,6 +86,7 @@ def test_pictures_of_the_documents_are_there_and_small() -> None:
 @pytest.mark.parametrize(("text", "message"), [
     ("```python\nassert 1 + 1 == 3\n```\n", "line 1"),
     ("```sh\nunipbd check nowhere.toml\n```\n", "line 1"),
+    ("```sh\nunipbd scenes/dam_break.toml -q --no-record --duration 0.1 --stop-on \"speed>99\"\n```\n", "exit code 0"),
     ("text\n\n```toml\n# a.toml\nspacing = -1.0\n```\n", "line 3"),
 ])
 def test_a_page_that_is_wrong_is_found(text: str, message: str, tmp_path: Path) -> None:

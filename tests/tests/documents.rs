@@ -18,7 +18,7 @@ The state of a run in numbers, once per frame. This page follows from the table 
 | JSON | `unipbd run --json`, `unipbd info LOG --json` under `last` | quantities; a vector is an array |
 | log | topic `/diagnostics`, message `unipbd.Diagnostics` | columns |
 | tables | `Log.diagnostics()` and `Log.to_pandas()` in Python | columns |
-| condition | `unipbd run --stop-on 'NAME>NUMBER'` | columns that are numbers, and a few short names |
+| condition | `unipbd run --stop-on \"NAME>NUMBER\"` | columns that are numbers, and a few short names |
 
 Columns are named as their quantity, but a vector has two and counts by phase have one for each phase.
 C = rho/rho0 - 1 is the density error: positive where a fluid is compressed, negative where it is dilated. The unit 1

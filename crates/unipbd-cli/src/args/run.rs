@@ -16,7 +16,7 @@ Examples:
   unipbd run scenes/dam_break.toml
   unipbd run scenes/open_gas.toml --threads 4 --duration 2 -o short.mcap --force
   unipbd run my_scene.toml --set liquid.0.xsph=0.02 --set solver.substeps=16
-  unipbd run my_scene.toml --stop-on 'density_error>0.05' --stop-on 'time>1.5'
+  unipbd run my_scene.toml --stop-on \"density_error>0.05\" --stop-on \"time>1.5\"
   unipbd run scenes/water_wheel.toml --live
 
 Exit codes: 0 done, 1 input or output, 2 arguments, 3 scene, 4 diverged, 5 --stop-on met or
@@ -29,7 +29,7 @@ pub struct SceneChanges {
     /// Set a key of the scene, as if the file said so; may be repeated
     ///
     /// The value is TOML (a bare word is a string); a table of an array is named by its number, from
-    /// 0, or its name: --set spacing=0.05, --set gravity=[0,-1.62], --set emitter.0.speed=2,
+    /// 0, or its name: --set spacing=0.05, --set "gravity=[0,-1.62]", --set emitter.0.speed=2,
     /// --set gas.air.drag=10
     #[arg(long = "set", value_name = "KEY=VALUE")]
     pub overrides: Vec<Override>,
