@@ -135,6 +135,9 @@ impl PressureGrid {
         };
         solve(self.accuracy, true);
         solve(Accuracy { tolerance: LOOSER_MOVES * self.accuracy.tolerance, ..self.accuracy }, false);
+        if !self.mixture.fills {
+            system.end_suction(&self.components);
+        }
         system.join_solutions(&self.lattice);
         system.difference(&self.lattice, &self.openings, multigrid.spans(), parallelism);
         if self.openings.boundless && self.system.is_full(&self.lattice) {
@@ -179,6 +182,9 @@ impl PressureGrid {
         multigrid.find(&system.depth);
         system.join_surface(lattice);
         system.read_flow(lattice, (fields, &self.mixture), multigrid.spans(), parallelism);
+        if solids.any() && !self.mixture.fills {
+            system.lighten(openings, fields, (lattice.cell * lattice.cell) / area);
+        }
         let (spans, couplings) = multigrid.finest_couplings();
         system.couple(lattice, openings, (spans, couplings), parallelism);
         multigrid.add_up(parallelism);
@@ -204,8 +210,10 @@ impl PressureGrid {
         let cell_mass = f64::from(self.cell_mass());
         let farthest = f64::from(FARTHEST * self.spacing);
         for solid in &solids.solids {
-            let [x, y, turn] = solids.load(solid, &system.pressure, stride).map(|load| load * cell_mass / dt);
-            bodies.load(solid.body, Vector64::new(x, y), turn, dt);
+            if solid.covers() {
+                let [x, y, turn] = solids.load(solid, &system.pressure, stride).map(|load| load * cell_mass / dt);
+                bodies.load(solid.body, Vector64::new(x, y), turn, dt);
+            }
             let Twist { linear, angular } = twist(solids.change(solid, &system.potential, stride));
             bodies.shift(solid.body, linear.clamp_length_max(farthest), angular);
         }
