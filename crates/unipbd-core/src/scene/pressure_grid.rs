@@ -76,6 +76,9 @@ impl Scene {
         if matched || !self.rope.is_empty() || !self.solid.is_empty() {
             return PressureGridChoice::off("ropes and soft bodies need more substeps than it takes");
         }
+        if self.solver.sleep {
+            return PressureGridChoice::off("a pool that was stirred seldom falls asleep with it");
+        }
         if let Some(reason) = self.hard_joint() {
             return PressureGridChoice::off(reason);
         }
@@ -200,7 +203,6 @@ impl Scene {
             (dry, "a scene without a fluid", OFF),
             (periodic && !self.body.is_empty(), "bodies in periodic domains", OFF),
             (self.cells_of_periods().is_none(), "periods that are no even number of square cells", OFF),
-            (self.solver.sleep, "sleep", "leave out solver.sleep"),
             (self.legacy.changes_density(), "the density constraints of [legacy]", "leave out the table [legacy]"),
         ];
         all.into_iter().filter(|(stands, ..)| *stands).map(|(_, what, instead)| (what, instead)).collect()
