@@ -172,10 +172,10 @@ impl Linked {
                     visit(Row::turn(), 0.0);
                 }
             }
-            JointKind::Distance { compliance, damping, rule, .. } => {
-                if rule == DistanceRule::Exact || self.impulse.x < 0.0 {
-                    visit(point(self.direction()), self.softness(compliance, damping).0);
-                }
+            JointKind::Distance { compliance, damping, rule, .. }
+                if rule == DistanceRule::Exact || self.impulse.x < 0.0 =>
+            {
+                visit(point(self.direction()), self.softness(compliance, damping).0);
             }
             _ => (),
         }
