@@ -6,6 +6,7 @@ mod determinism;
 mod documents;
 mod emitters;
 mod filled_gas;
+mod grid_joints;
 mod import_circles;
 mod liquids;
 mod loads;

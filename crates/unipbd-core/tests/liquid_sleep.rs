@@ -1,7 +1,9 @@
 //! A pool at rest falls asleep, costs nothing, and wakes where something happens to it.
 
 use unipbd_core::edit::Points;
-use unipbd_core::scene::{Block, BodyDescription, Emitter, Liquid, Scene, SolverSettings, Substeps, Tank};
+use unipbd_core::scene::{
+    Block, BodyDescription, Emitter, Liquid, PressureGridUse, Scene, SolverSettings, Substeps, Tank,
+};
 use unipbd_core::{BuildOptions, Edit, Phase, Solver, Vector64};
 
 const SPACING: f64 = 0.1;
@@ -218,4 +220,82 @@ fn an_emitter_that_opens_wakes_what_its_stream_hits() {
     println!("{count} slept; {} came, {awake} awake", now - count);
     assert!(now > count && awake > now - count, "those that came and those that they hit are awake");
     assert!(solver.particles().asleep() > count / 4, "far away they sleep on");
+}
+
+/// The same with the pressure grid, and measured walls.
+fn with_grid(scene: Scene) -> Scene {
+    let solver = SolverSettings { pressure_grid: PressureGridUse::On, substeps: Substeps::Auto, ..scene.solver };
+    let tank = scene.tank.into_iter().map(|tank| Tank { name: "t".into(), ..tank }).collect();
+    Scene { solver, tank, ..scene }
+}
+
+/// Force on the floor over the weight of the water.
+fn floor(solver: &Solver) -> f64 {
+    let weight = solver.particles().len() as f64 * 1000.0 * SPACING * SPACING * 9.81;
+    let walls = solver.wall_forces();
+    -walls.iter().find(|wall| wall.name == "t bottom").expect("it is measured").force.y / weight
+}
+
+#[test]
+fn a_pool_with_the_pressure_grid_sleeps_and_a_drop_wakes_a_part_of_it() {
+    let mut solvers = [true, false].map(|sleep| build(&with_grid(pool(120.0, 16.0, sleep)), 2));
+    run_to_sleep(&mut solvers[0], 5.0);
+    let slept = solvers[0].time();
+    run(&mut solvers[1], slept);
+    let (places, pressed) = (solvers[0].positions().to_vec(), floor(&solvers[0]));
+    assert_eq!(run(&mut solvers[0], 1.0), 0, "asleep no row is stepped");
+    assert!(solvers[0].positions() == places && floor(&solvers[0]) == pressed, "all stays as it is");
+    assert!((pressed - 1.0).abs() < 0.02, "the floor carries the pool: {pressed}");
+    let count = solvers[0].particles().len();
+    solvers.iter_mut().for_each(|solver| drop_in(solver, 2.0, 2.6));
+    let work: Vec<u64> = solvers.iter_mut().map(|solver| run(solver, 0.4)).collect();
+    let asleep = solvers[0].particles().asleep();
+    println!("slept at {slept:.1} s; {asleep} of {count} asleep after the splash, {work:?} rows stepped");
+    assert!(asleep < count && asleep > count / 4 && work[0] < work[1]);
+    let far = |solver: &Solver| -> Vec<usize> {
+        (0..solver.particles().len()).filter(|&row| solver.positions()[row].x > 8.0).collect()
+    };
+    let fastest = far(&solvers[0]).into_iter().map(|row| solvers[0].velocities()[row].length()).fold(0.0, f32::max);
+    assert!(fastest < 0.1, "far from the drop nothing moves: {fastest} m/s");
+    solvers.iter_mut().for_each(|solver| {
+        run(solver, 4.0);
+    });
+    let [slept, unslept] = [heights(&solvers[0]), heights(&solvers[1])];
+    let apart = [(slept.0 - unslept.0) / SPACING, (slept.1 - unslept.1) / SPACING];
+    println!("centre of mass {:+.3} and surface {:+.3} spacings from the unslept run", apart[0], apart[1]);
+    assert!(apart[0].abs() < 0.1 && apart[1].abs() < 0.2, "{apart:?}");
+}
+
+#[test]
+fn a_sleeping_pool_with_the_pressure_grid_goes_on_bit_for_bit_on_any_number_of_threads() {
+    let scene = with_grid(pool(110.0, 16.0, true));
+    let mut solver = build(&scene, 1);
+    run_to_sleep(&mut solver, 5.0);
+    drop_in(&mut solver, 1.0, 2.3);
+    run(&mut solver, 0.3);
+    let asleep = solver.particles().asleep();
+    assert!(asleep > 0 && asleep < solver.particles().len());
+    let mut other = build(&scene, 3);
+    other.restore(&solver.save()).expect("the same scene");
+    for solver in [&mut solver, &mut other] {
+        run(solver, 1.0);
+    }
+    assert_eq!(other.state_hash(), solver.state_hash());
+}
+
+#[test]
+fn a_raft_sleeps_in_a_pool_with_the_pressure_grid_and_wakes_when_pushed() {
+    let raft = BodyDescription { density: 500.0, ..BodyDescription::rectangle([0.8, 0.4], [2.0, 2.0]) };
+    let mut solver = build(&with_grid(Scene { body: vec![raft], ..pool(40.0, 20.0, true) }), 1);
+    run_to_sleep(&mut solver, 40.0);
+    let raft = solver.bodies()[0].clone();
+    println!("asleep after {:.1} s, raft at {}, force {}", solver.time(), raft.position, raft.fluid_force);
+    assert!(raft.asleep && (raft.fluid_force.y / (raft.mass * 9.81) - 1.0).abs() < 0.1);
+    assert_eq!(run(&mut solver, 2.0), 0);
+    assert!(solver.bodies()[0].position == raft.position && solver.bodies()[0].fluid_force == raft.fluid_force);
+    solver.apply(&Edit::new().set_body_velocity(0, Vector64::new(0.0, -2.0), 0.0)).expect("it is there");
+    run(&mut solver, 0.1);
+    assert!(!solver.bodies()[0].asleep && solver.bodies()[0].position.y < raft.position.y - 0.02, "pushed down");
+    run(&mut solver, 6.0);
+    assert!((solver.bodies()[0].position.y - raft.position.y).abs() < 0.5 * SPACING, "and up again");
 }

@@ -10,10 +10,10 @@ mod saved;
 mod soft_bodies;
 mod ties;
 
-use crate::math::{Real, Vector, Vector64, direction, vector, wide};
+use crate::math::{Real, Vector, Vector64, vector, wide};
 use crate::particles::Particles;
-use crate::rigid::contact::{Contacts, Joint, JointKind};
-use crate::rigid::{Bodies, Body, HeldRow, Mobilities};
+use crate::rigid::contact::Contacts;
+use crate::rigid::{Bodies, Body, Mobilities};
 use crate::rows::RowIndex;
 use outlined::Meeting;
 pub(crate) use outlined::{Met, is_outlined};
@@ -167,37 +167,12 @@ impl RigidBodies {
         self.contacts.iterate(&mut self.bodies);
     }
 
-    /// Finds how each body answers to a load. Contacts hold where they were pressed in the last substep: call it before
-    /// they are solved again.
+    /// Finds how each body answers to a load. Contacts and joints hold as they did in the last substep: call it when they
+    /// were prepared, and before they are solved again.
     pub(crate) fn find_mobilities(&mut self) {
         self.contacts.note_impulses();
-        let mut mobilities = std::mem::take(&mut self.mobilities);
-        let hinges = self.contacts.joint_loads().map(|(joint, ..)| joint).flat_map(|joint| self.hinge_rows(joint));
-        mobilities.find(self.bodies.inverse_masses(), self.contacts.held_rows().chain(hinges));
-        self.mobilities = mobilities;
-    }
-
-    /// The rows in which hinges, welds and sliders hold two bodies; none for other joints.
-    fn hinge_rows(&self, joint: Joint) -> impl Iterator<Item = HeldRow> {
-        let bodies = &self.bodies;
-        let on = move |body: u32, anchor: Vector64, sign: f64, axis: Vector64, turn: f64| {
-            let arm = direction(bodies.pose(body).angle).rotate(anchor);
-            (body, [sign * axis.x, sign * axis.y, sign * (arm.perp_dot(axis) + turn)])
-        };
-        let (x, y, none) = ((Vector64::X, 0.0), (Vector64::Y, 0.0), Vector64::ZERO);
-        let rows: Vec<(Vector64, f64)> = match joint.kind {
-            JointKind::Hinge { .. } => vec![x, y],
-            JointKind::Weld { .. } => vec![x, y, (none, 1.0)],
-            JointKind::Slider { axis, .. } => {
-                let along = direction(joint.other.map_or(0.0, |other| bodies.pose(other).angle)).rotate(axis);
-                vec![(along.perp(), 0.0), (none, 1.0)]
-            }
-            _ => Vec::new(),
-        };
-        rows.into_iter().map(move |(axis, turn)| {
-            let other = joint.other.map(|other| on(other, joint.other_anchor, -1.0, axis, turn));
-            HeldRow { sides: [on(joint.body, joint.anchor, 1.0, axis, turn), other.unwrap_or(HeldRow::WORLD)] }
-        })
+        let contacts = &self.contacts;
+        self.mobilities.find(self.bodies.inverse_masses(), contacts.joint_rows(), contacts.held_rows());
     }
 
     /// The bodies to be pushed by a pressure grid, their mobilities, and whether it meets a body as one.

@@ -22,6 +22,7 @@ struct Run {
 pub(super) struct Components {
     runs: Vec<Run>,
     joined: UnionFind,
+    /// Whether the part of each run meets air.
     airy: Vec<bool>,
     /// Runs of the closed parts, ordered by part, and the number of the part of each.
     closed: Vec<(u32, Run)>,
@@ -56,6 +57,7 @@ impl Components {
         }
         for (number, run) in self.runs.iter().enumerate() {
             let root = self.joined.root(number as u32) as usize;
+            self.airy[number] = self.airy[root];
             if !self.airy[root] {
                 self.closed.push((root as u32, *run));
             }
@@ -102,6 +104,12 @@ impl Components {
                 }
             }
         }
+    }
+
+    /// Whether a cell is of a part that meets air.
+    pub fn meets_air(&self, cell: usize) -> bool {
+        let number = self.runs.partition_point(|run| run.end as usize <= cell);
+        self.runs.get(number).is_some_and(|run| run.start as usize <= cell && self.airy[number])
     }
 
     /// The closed parts.

@@ -135,6 +135,9 @@ impl PressureGrid {
         };
         solve(self.accuracy, true);
         solve(Accuracy { tolerance: LOOSER_MOVES * self.accuracy.tolerance, ..self.accuracy }, false);
+        if !self.mixture.fills {
+            system.end_suction(&self.components);
+        }
         system.join_solutions(&self.lattice);
         system.difference(&self.lattice, &self.openings, multigrid.spans(), parallelism);
         if self.openings.boundless && self.system.is_full(&self.lattice) {
@@ -142,7 +145,7 @@ impl PressureGrid {
         }
         self.push(particles, dt as Real, parallelism);
         if let Some(immersed) = bodies {
-            self.push_bodies(immersed.bodies, dt);
+            self.push_bodies(immersed.bodies, particles.asleep() > 0, dt);
         }
         self.system.set_constants(&self.lattice, &self.openings, &self.components);
         self.system.join_solutions(&self.lattice);
@@ -179,6 +182,9 @@ impl PressureGrid {
         multigrid.find(&system.depth);
         system.join_surface(lattice);
         system.read_flow(lattice, (fields, &self.mixture), multigrid.spans(), parallelism);
+        if solids.any() && !self.mixture.fills {
+            system.lighten(openings, fields, (lattice.cell * lattice.cell) / area);
+        }
         let (spans, couplings) = multigrid.finest_couplings();
         system.couple(lattice, openings, (spans, couplings), parallelism);
         multigrid.add_up(parallelism);
@@ -198,14 +204,18 @@ impl PressureGrid {
         system.assemble_right_side(lattice, openings, fields, rates, (solids, multigrid.spans()), parallelism);
     }
 
-    /// Loads the bodies with the pressure of the grid, and moves them with the fluid around them.
-    fn push_bodies(&mut self, bodies: &mut Bodies, dt: f64) {
+    /// Loads the bodies with the pressure of the grid, and moves them with the fluid around them. Bodies that sleep with
+    /// their fluid keep their load.
+    fn push_bodies(&mut self, bodies: &mut Bodies, with_fluid: bool, dt: f64) {
         let (solids, system, stride) = (&self.solids, &self.system, self.lattice.stride());
         let cell_mass = f64::from(self.cell_mass());
         let farthest = f64::from(FARTHEST * self.spacing);
         for solid in &solids.solids {
-            let [x, y, turn] = solids.load(solid, &system.pressure, stride).map(|load| load * cell_mass / dt);
-            bodies.load(solid.body, Vector64::new(x, y), turn, dt);
+            let sleeps = with_fluid && bodies.is_asleep(solid.body);
+            if solid.covers() && !sleeps {
+                let [x, y, turn] = solids.load(solid, &system.pressure, stride).map(|load| load * cell_mass / dt);
+                bodies.load(solid.body, Vector64::new(x, y), turn, dt);
+            }
             let Twist { linear, angular } = twist(solids.change(solid, &system.potential, stride));
             bodies.shift(solid.body, linear.clamp_length_max(farthest), angular);
         }
@@ -244,7 +254,8 @@ impl PressureGrid {
     ) {
         let (lattice, openings, system) = (&self.lattice, &self.openings, &self.system);
         let starts = &particles.start;
-        let (rows, inverse_masses) = (particles.dense(), &particles.inverse_mass);
+        // Rows that sleep keep their pressure.
+        let (rows, inverse_masses) = (particles.listed(), &particles.inverse_mass);
         let factor = per_pressure * lattice.cell / dt * self.mixture.heaviest;
         parallelism.update(&mut particles.multiplier[..rows], |row, multiplier| {
             if inverse_masses[row] > 0.0 {

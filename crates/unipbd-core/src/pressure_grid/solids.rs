@@ -7,7 +7,8 @@ use super::chords::Outline;
 use super::lattice::Lattice;
 use crate::bytes::held;
 use crate::math::{Real, Vector64};
-use crate::rigid::{Bodies, Mobilities, Twist};
+use crate::rigid::{Bodies, Mobilities, Mobility, Twist};
+use std::ops::Range;
 
 /// A face covered to more than this part is covered wholly.
 const WHOLE: f64 = 0.97;
@@ -36,13 +37,22 @@ pub(super) struct Covered {
 pub(super) struct Solid {
     pub body: u32,
     /// Its faces.
-    faces: std::ops::Range<usize>,
-    /// Change of velocity by a force and a torque, times the mass of a full cell.
-    response: [[f64; 3]; 3],
+    faces: Range<usize>,
+    /// What moves it.
+    responses: Range<usize>,
     /// Predicted velocity [m/s], [rad/s].
     velocity: [f64; 3],
     /// Mass of a cell of the heaviest fluid over that of a cell of the body, along each axis; 0 where it cannot move.
     pub lightness: [Real; 2],
+}
+
+/// How a body answers to the load on one: that itself, or another one that joints hold to it.
+#[derive(Clone, Copy, Debug)]
+struct Response {
+    /// The number of the solid that is loaded.
+    to: u32,
+    /// Change of velocity by a force and a torque, times the mass of a full cell.
+    change: Mobility,
 }
 
 /// The bodies that a fluid meets.
@@ -58,6 +68,9 @@ pub(crate) struct Immersed<'a> {
 pub(super) struct Solids {
     pub solids: Vec<Solid>,
     faces: Vec<Covered>,
+    responses: Vec<Response>,
+    /// The number of the solid of each body.
+    numbers: Vec<Option<u32>>,
     intervals: Vec<[f64; 2]>,
     /// Covered parts of the faces of one row.
     parts: Vec<f64>,
@@ -82,26 +95,38 @@ impl Solids {
         self.solids.clear();
         self.faces.clear();
         let Immersed { bodies, counts, mobilities } = immersed;
-        let rigid = |&body: &u32| counts(body) && bodies.elasticity(body as usize).is_none();
+        let rigid = |&body: &u32| bodies.elasticity(body as usize).is_none();
         for body in (0..bodies.len() as u32).filter(rigid) {
             let first = self.faces.len();
-            self.cover(lattice, bodies, body);
-            if self.faces.len() == first {
-                continue;
+            if counts(body) {
+                self.cover(lattice, bodies, body);
             }
-            let (view, mobility) = (&bodies.views()[body as usize], mobilities.of(body));
-            let moved = bodies.displacement_at(body, Vector64::ZERO);
-            let turned = bodies.displacement_at(body, Vector64::X).y - moved.y;
-            let velocity = [moved.x, moved.y, turned].map(|moved| moved / units.dt);
-            let area = view.sample_area * view.samples.len() as f64;
-            let lightness = units.cell_mass * area / (view.mass * f64::from(lattice.cell * lattice.cell));
-            self.solids.push(Solid {
-                body,
-                faces: first..self.faces.len(),
-                response: mobility.map(|row| row.map(|entry| entry * units.cell_mass)),
-                velocity,
-                lightness: [0, 1].map(|axis| (lightness * view.mass * mobility[axis][axis]) as Real),
-            });
+            // Bodies that joints hold to others move with them.
+            if self.faces.len() > first || mobilities.companions(body).len() > 1 {
+                let solid = Solid::new((bodies, body), first..self.faces.len(), (lattice, mobilities.of(body)), units);
+                self.solids.push(solid);
+            }
+        }
+        self.find_responses(bodies.len(), mobilities, units);
+    }
+
+    /// Finds what moves each solid.
+    fn find_responses(&mut self, bodies: usize, mobilities: &Mobilities, units: Units) {
+        self.numbers.clear();
+        self.numbers.resize(bodies, None);
+        for (number, solid) in (0..).zip(&self.solids) {
+            self.numbers[solid.body as usize] = Some(number);
+        }
+        self.responses.clear();
+        for solid in &mut self.solids {
+            let first = self.responses.len();
+            for &other in mobilities.companions(solid.body) {
+                let change = mobilities.between(solid.body, other).map(|row| row.map(|entry| entry * units.cell_mass));
+                if let Some(to) = self.numbers[other as usize].filter(|_| change != [[0.0; 3]; 3]) {
+                    self.responses.push(Response { to, change });
+                }
+            }
+            solid.responses = first..self.responses.len();
         }
     }
 
@@ -166,7 +191,7 @@ impl Solids {
 
     /// Adds the outflow of each cell by the response of the bodies to a pressure [m/s].
     pub fn respond(&self, pressure: &[Real], out: &mut [Real], stride: usize, counts: impl Fn(usize) -> bool) {
-        for solid in self.solids.iter().filter(|solid| solid.response != [[0.0; 3]; 3]) {
+        for solid in self.solids.iter().filter(|solid| !solid.responses.is_empty()) {
             let change = self.change(solid, pressure, stride);
             self.push_through(solid, change, 1.0, stride, (&counts, out));
         }
@@ -186,8 +211,13 @@ impl Solids {
 
     /// Change of the velocity of a body by a pressure [m/s], [rad/s].
     pub fn change(&self, solid: &Solid, pressure: &[Real], stride: usize) -> [f64; 3] {
-        let load = self.load(solid, pressure, stride);
-        solid.response.map(|row| row[0] * load[0] + row[1] * load[1] + row[2] * load[2])
+        let mut sum = [0.0; 3];
+        for response in &self.responses[solid.responses.clone()] {
+            let load = self.load(&self.solids[response.to as usize], pressure, stride);
+            let change = response.change.map(|row| row[0] * load[0] + row[1] * load[1] + row[2] * load[2]);
+            sum = std::array::from_fn(|k| sum[k] + change[k]);
+        }
+        sum
     }
 
     /// Adds the flow through the faces of a body that moves at this velocity, times a factor: out of the cell behind a
@@ -215,7 +245,36 @@ impl Solids {
 
     /// Memory held \[bytes].
     pub fn memory_bytes(&self) -> usize {
-        held(&self.solids) + held(&self.faces) + held(&self.intervals) + held(&self.parts) + self.outline.memory_bytes()
+        let of_bodies = held(&self.solids) + held(&self.faces) + held(&self.responses) + held(&self.numbers);
+        of_bodies + held(&self.intervals) + held(&self.parts) + self.outline.memory_bytes()
+    }
+}
+
+impl Solid {
+    /// A body, with its faces and its mobility.
+    fn new(
+        (bodies, body): (&Bodies, u32),
+        faces: Range<usize>,
+        (lattice, mobility): (&Lattice, Mobility),
+        units: Units,
+    ) -> Self {
+        let view = &bodies.views()[body as usize];
+        let moved = bodies.displacement_at(body, Vector64::ZERO);
+        let turned = bodies.displacement_at(body, Vector64::X).y - moved.y;
+        let area = view.sample_area * view.samples.len() as f64;
+        let lightness = units.cell_mass * area / (view.mass * f64::from(lattice.cell * lattice.cell));
+        Solid {
+            body,
+            faces,
+            responses: 0..0,
+            velocity: [moved.x, moved.y, turned].map(|moved| moved / units.dt),
+            lightness: [0, 1].map(|axis| (lightness * view.mass * mobility[axis][axis]) as Real),
+        }
+    }
+
+    /// Whether it covers a face.
+    pub fn covers(&self) -> bool {
+        !self.faces.is_empty()
     }
 }
 
@@ -227,7 +286,7 @@ impl Covered {
 }
 
 /// The whole numbers from `low` up to `high`, between 0 and `most`.
-fn within(low: f64, high: f64, most: usize) -> std::ops::Range<usize> {
+fn within(low: f64, high: f64, most: usize) -> Range<usize> {
     let number = |at: f64| at.clamp(0.0, most as f64) as usize;
     number(low)..number(high)
 }

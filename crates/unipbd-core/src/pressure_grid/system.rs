@@ -1,5 +1,6 @@
 //! The linear system of the grid: liquid cells, couplings between cells, and right sides.
 
+use super::components::Components;
 use super::couplings::Couplings;
 use super::flow::Flow;
 use super::lattice::Lattice;
@@ -22,6 +23,14 @@ const MASKED: Real = 1e-3;
 /// its gaps are no air.
 const LEAST_DEPTH: Real = 0.5;
 const LEAST_FILL: Real = 0.1;
+/// Where bodies cover between these parts of a cell, and fluid fills less than this part of the rest, the cell is air:
+/// drops at a wet body are no liquid around it.
+const PARTLY_BODY: [Real; 2] = [0.05, 0.7];
+const DRIPPING: Real = 0.5;
+/// Fluid beside a body counts as lighter where its particles fill less than this part of what is open...
+const SPARSE: Real = 0.75;
+/// ...down to one part in so many: else a body would be slowed by more fluid than there is.
+const LIGHTEST: Real = 3.0;
 /// Liquid cells with a lower fill fraction than this are contracted: flow around corners and merged spray leave pores.
 /// At 0.9 a dam break comes to rest half a spacing too high, and water that sways through a gap gains energy...
 const POROUS: Real = 0.98;
@@ -120,11 +129,26 @@ impl System {
                 }
             });
         }
+        if !fills && !fields.filling.is_empty() {
+            self.leave_out_drips(fields, openings);
+        }
         // Cells around the box are empty, even if particle weights reach them.
         let (stride, cells) = (lattice.stride(), lattice.len());
         let sides = (0..cells).step_by(stride).flat_map(|row| [row, row + lattice.width + 1]);
         for rim in sides.chain(0..stride).chain(cells - stride..cells) {
             self.depth[rim] = -1.0;
+        }
+    }
+
+    /// Makes cells beside bodies air that hold a few drops only.
+    fn leave_out_drips(&mut self, fields: &Fields, openings: &Openings) {
+        for cell in self.touched.iter().map(|&cell| cell as usize) {
+            let [all, free] =
+                [fields.centre[cell][1], -fields.filling[cell]].map(|filled| filled * openings.inverse[cell]);
+            let body = all - free;
+            if body > PARTLY_BODY[0] && body < PARTLY_BODY[1] && free < DRIPPING * (1.0 - body) {
+                self.depth[cell] = smaller(self.depth[cell], depth_of(free / (1.0 - body)));
+            }
         }
     }
 
@@ -160,6 +184,29 @@ impl System {
                 }
             });
             images.copy(ease, stride);
+        }
+    }
+
+    /// Makes fluid light that is sparse beside bodies; `whole` particles fill a cell.
+    pub fn lighten(&mut self, openings: &Openings, fields: &Fields, whole: Real) {
+        let of_axes = [(&openings.left, &fields.left), (&openings.lower, &fields.lower)];
+        for cell in self.touched.iter().map(|&cell| cell as usize) {
+            for (axis, (of_walls, sums)) in of_axes.into_iter().enumerate() {
+                let (open, number, mass) = (self.open[axis][cell], fields.number[axis][cell], sums[cell][1]);
+                if open < of_walls[cell] && mass > 0.0 {
+                    let sparse = smaller(SPARSE * whole * open / number, LIGHTEST);
+                    self.ease[axis][cell] = number / mass * larger(sparse, 1.0);
+                }
+            }
+        }
+    }
+
+    /// Ends suction at bodies in fluid that meets air: it parts from them.
+    pub fn end_suction(&mut self, components: &Components) {
+        for cell in self.touched.iter().map(|&cell| cell as usize) {
+            if self.pressure[cell] < 0.0 && components.meets_air(cell) {
+                self.pressure[cell] = 0.0;
+            }
         }
     }
 

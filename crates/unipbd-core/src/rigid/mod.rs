@@ -18,7 +18,7 @@ pub use change::BodyChange;
 pub use contact::{ContactEvent, ContactPair, ContactPoint, JointState};
 pub use derived::InverseMass;
 pub(crate) use describe::{joint, specification, strength, waypoints};
-pub(crate) use mobility::{HeldRow, Mobilities};
+pub(crate) use mobility::{HeldRow, Mobilities, Mobility};
 pub(crate) use motion::along_curve;
 pub use motion::{Motion, Repeat, Waypoint};
 pub(crate) use query::{Outline, rectangle as box_outline};

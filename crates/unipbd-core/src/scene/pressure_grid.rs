@@ -1,6 +1,7 @@
 //! Whether a scene uses the pressure grid.
 
-use super::{BodyDescription, BodyKind, BodySolver, Scene, Substeps};
+use super::{BodyDescription, BodyKind, BodySolver, JointDescription, JointRule, Scene, Substeps};
+use crate::shapes::Shape;
 use serde::{Deserialize, Serialize};
 
 /// Fewer particles fill so few cells that the grid is all surface.
@@ -9,6 +10,9 @@ const LEAST_PARTICLES: f64 = 60.0;
 /// Bodies that nothing moves are walls of the grid from this thickness on, in spacings: two of its cells. Thinner ones
 /// could lie between the corners of its cells, and water of 50 spacings leaks through them.
 pub(crate) const WALL_OF_GRID: f64 = 4.0;
+
+/// Bodies on joints that answer to the pressure together, at most: the cost grows as their cube.
+pub(crate) const MOST_JOINED: usize = 32;
 
 /// Width of a cell of the grid \[spacings]; along periodic axes it may differ by this part.
 pub(crate) const CELL: f64 = 2.0;
@@ -72,8 +76,11 @@ impl Scene {
         if matched || !self.rope.is_empty() || !self.solid.is_empty() {
             return PressureGridChoice::off("ropes and soft bodies need more substeps than it takes");
         }
-        if !self.joint.is_empty() {
-            return PressureGridChoice::off("bodies on joints turn too slowly with it");
+        if self.solver.sleep {
+            return PressureGridChoice::off("a pool that was stirred seldom falls asleep with it");
+        }
+        if let Some(reason) = self.hard_joint() {
+            return PressureGridChoice::off(reason);
         }
         if self.liquid.iter().any(|liquid| liquid.surface_tension != 0.0) {
             return PressureGridChoice::off("its cells are too wide for surface tension");
@@ -138,17 +145,53 @@ impl Scene {
     /// A body that no fluid moves and that is thinner than walls of the grid are.
     fn thin_wall(&self) -> Option<String> {
         let fixed = |body: &&BodyDescription| body.kind != BodyKind::Dynamic && !body.sensor;
+        self.body.iter().filter(fixed).find(|body| self.is_thin(body)).map(|body| format!("{:?}", body.name))
+    }
+
+    /// Whether a body is thinner than walls of the grid are.
+    fn is_thin(&self, body: &BodyDescription) -> bool {
+        let shape = body.shape();
+        // The scene may not have been validated yet.
+        if shape.check().is_err() {
+            return false;
+        }
         // The width of a compact body is twice its reach from the centre.
-        let thin = |body: &&BodyDescription| {
-            let shape = body.shape();
-            // The scene may not have been validated yet.
-            if shape.check().is_err() {
-                return false;
+        let reach = -shape.nearest(shape.moments().centroid).distance;
+        shape.thickness().max(2.0 * reach) < (WALL_OF_GRID - 0.5) * self.spacing
+    }
+
+    /// Why bodies on a joint move worse with the grid.
+    fn hard_joint(&self) -> Option<String> {
+        let turns = |joint: &&JointDescription| matches!(joint.kind, JointRule::Hinge | JointRule::Slider);
+        for joint in self.joint.iter().filter(turns) {
+            let joined = |body: &&BodyDescription| body.name == joint.body || Some(&body.name) == joint.other.as_ref();
+            for body in self.body.iter().filter(joined).filter(|body| body.kind == BodyKind::Dynamic) {
+                if self.is_thin(body) {
+                    return Some(format!("its cells are too wide for the body {:?} on a joint", body.name));
+                }
+                if joint.kind == JointRule::Hinge && is_hollowed(&body.shape()) {
+                    return Some(format!("the body {:?} would turn too slowly with it: it is not convex", body.name));
+                }
             }
-            let reach = -shape.nearest(shape.moments().centroid).distance;
-            shape.thickness().max(2.0 * reach) < (WALL_OF_GRID - 0.5) * self.spacing
-        };
-        self.body.iter().filter(fixed).find(thin).map(|body| format!("{:?}", body.name))
+        }
+        let most = self.longest_chain();
+        (most > MOST_JOINED).then(|| format!("it does not carry chains of {most} bodies on joints"))
+    }
+
+    /// Number of moving bodies that hang together by joints, at most.
+    fn longest_chain(&self) -> usize {
+        let (mut chains, mut lengths) = ((0..self.body.len()).collect::<Vec<usize>>(), vec![1; self.body.len()]);
+        let moving =
+            |name: &String| self.body.iter().position(|body| body.name == *name && body.kind == BodyKind::Dynamic);
+        for joint in &self.joint {
+            let Some((a, b)) = moving(&joint.body).zip(joint.other.as_ref().and_then(moving)) else { continue };
+            let (kept, other) = (chains[a], chains[b]);
+            if kept != other {
+                chains.iter_mut().filter(|chain| **chain == other).for_each(|chain| *chain = kept);
+                lengths[kept] += lengths[other];
+            }
+        }
+        lengths.into_iter().max().unwrap_or(0)
     }
 
     /// The properties of the scene that the pressure grid does not support, and what to do about each.
@@ -160,9 +203,18 @@ impl Scene {
             (dry, "a scene without a fluid", OFF),
             (periodic && !self.body.is_empty(), "bodies in periodic domains", OFF),
             (self.cells_of_periods().is_none(), "periods that are no even number of square cells", OFF),
-            (self.solver.sleep, "sleep", "leave out solver.sleep"),
             (self.legacy.changes_density(), "the density constraints of [legacy]", "leave out the table [legacy]"),
         ];
         all.into_iter().filter(|(stands, ..)| *stands).map(|(_, what, instead)| (what, instead)).collect()
     }
+}
+
+/// Whether a shape has corners that point inwards, as a wheel with paddles has.
+fn is_hollowed(shape: &Shape) -> bool {
+    let Shape::Polygon(corners) = shape else { return false };
+    let (count, corner) = (corners.len(), |k: usize| corners[k % corners.len()]);
+    let turns = (0..count).map(|k| (corner(k + 1) - corner(k)).perp_dot(corner(k + 2) - corner(k + 1)));
+    let (least, most) = turns.fold((0.0_f64, 0.0_f64), |(least, most), turn| (least.min(turn), most.max(turn)));
+    let straight = 1e-9 * most.max(-least);
+    least < -straight && most > straight
 }

@@ -36,6 +36,21 @@ impl BodyForce {
     }
 }
 
+/// Gives sleeping rows the velocity of a fall over the substep, as those awake have it: on a grid they press so.
+pub(super) fn let_sleepers_fall(particles: &mut Particles, forces: &[BodyForce], dt: Real) {
+    for row in particles.awake()..particles.dense() {
+        if particles.inverse_mass[row] > 0.0 {
+            particles.velocity[row] = forces[usize::from(particles.material[row])].acceleration * dt;
+        }
+    }
+}
+
+/// Takes it from them again.
+pub(super) fn stop_sleepers(particles: &mut Particles) {
+    let sleeping = particles.awake()..particles.dense();
+    particles.velocity[sleeping].fill(Vector::ZERO);
+}
+
 /// u = dt v + dt^2 a, x = x_n + u, for every row that has inertia; kinematic rows keep their velocity.
 pub(super) fn predict(particles: &mut Particles, forces: &[BodyForce], dt: Real, parallelism: Parallelism) {
     let bands = particles.bands();

@@ -80,7 +80,7 @@ impl World {
 
     fn project_on_grid(&mut self) {
         let parts = &mut self.parts;
-        let Some(grid) = &mut parts.pressure_grid else { return };
+        let Some(grid) = parts.pressure_grid.as_mut().filter(|_| parts.particles.awake() > 0) else { return };
         if let Some(rigid) = &parts.rigid {
             let filled = grid.filled_mut();
             filled.clear();
@@ -89,7 +89,9 @@ impl World {
         let mut immersed = parts.rigid.as_mut().map(RigidBodies::immersed);
         let bodies = immersed.as_mut().map(|(bodies, mobilities, counts)| Immersed { bodies, counts, mobilities });
         let around = (&parts.walls, &parts.outlines, bodies);
+        integrate::let_sleepers_fall(&mut parts.particles, &parts.forces, self.clock.dt as Real);
         grid.project(&mut parts.particles, around, self.clock.dt, parts.parallelism);
+        integrate::stop_sleepers(&mut parts.particles);
         if let Some((bodies, ..)) = immersed {
             grid.push_outlines(&parts.outlines, bodies, self.clock.dt);
         }
@@ -97,7 +99,7 @@ impl World {
 
     fn add_grid_wall_forces(&mut self) {
         let parts = &self.parts;
-        let Some(grid) = &parts.pressure_grid else { return };
+        let Some(grid) = parts.pressure_grid.as_ref().filter(|_| parts.particles.awake() > 0) else { return };
         grid.push_walls(&parts.walls, &mut self.wall_impulses);
     }
 

@@ -73,6 +73,15 @@ impl Block {
         (a, b)
     }
 
+    /// Visits the equations that hold in this substep, with the softness of each; a motor holds while it has strength
+    /// left, a limit while it is pressed.
+    pub fn each_held(&self, joint: &Joint, dt: f64, mut visit: impl FnMut(Row, f64)) {
+        self.rows[..self.count].iter().for_each(|row| visit(*row, 0.0));
+        if self.limit != 0.0 || joint.motor().is_some_and(|motor| motor.holds(self.motor, dt)) {
+            visit(self.free, 0.0);
+        }
+    }
+
     /// One iteration.
     pub fn solve(
         &mut self,

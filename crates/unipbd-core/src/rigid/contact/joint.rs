@@ -2,6 +2,9 @@
 
 use crate::math::Vector64;
 
+/// Part of the torque of a motor beyond which it may be too weak to hold its speed.
+const WITH_STRENGTH: f64 = 0.9;
+
 /// The constraint of a joint.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
 pub enum JointKind {
@@ -70,6 +73,11 @@ pub struct Motor {
 }
 
 impl Motor {
+    /// Whether it holds its speed with this impulse over a substep, and has some strength left.
+    pub(super) fn holds(&self, impulse: f64, dt: f64) -> bool {
+        impulse.abs() < WITH_STRENGTH * self.max_torque * dt * dt
+    }
+
     /// Whether its numbers are sound.
     pub(super) fn is_sound(&self) -> bool {
         self.speed.is_finite() && self.max_torque >= 0.0

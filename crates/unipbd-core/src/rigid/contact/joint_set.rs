@@ -4,7 +4,10 @@ use super::Contacts;
 use super::joint::{Joint, JointKind, JointState, Strength};
 use super::linked::{Linked, Status};
 use crate::math::Vector64;
-use crate::rigid::Bodies;
+use crate::rigid::{Bodies, HeldRow};
+
+/// Rows of a joint at most: three of a weld, or those of a hinge or slider with the one of its motor and limits.
+const MOST_ROWS: usize = 4;
 
 impl Contacts {
     /// Adds a joint and returns its index. Without `collide`, the bodies it links no longer collide with each other.
@@ -110,6 +113,23 @@ impl Contacts {
         let square = self.dt * self.dt;
         let live = self.joints.iter().filter(|linked| linked.is_live());
         live.map(move |linked| (linked.joint, linked.force() / square, linked.moment() / square))
+    }
+
+    /// The rows in which joints hold bodies in this substep: call it when they were prepared.
+    pub(crate) fn joint_rows(&self) -> impl Iterator<Item = HeldRow> + '_ {
+        self.joints.iter().flat_map(|linked| {
+            let (a, b) = linked.bodies();
+            let (mut rows, mut count) = ([None; MOST_ROWS], 0);
+            linked.each_held(|row, softness| {
+                let on = |body: u32, sign: f64, along: Vector64, moment: f64| {
+                    (body, [along.x, along.y, moment].map(|part| sign * part))
+                };
+                let sides = [on(a, 1.0, row.along.0, row.apply.0), on(b, -1.0, row.along.1, row.apply.1)];
+                rows[count] = Some(HeldRow { sides, softness });
+                count += 1;
+            });
+            rows.into_iter().flatten()
+        })
     }
 
     /// All joints, those that are broken or taken away too, by index.

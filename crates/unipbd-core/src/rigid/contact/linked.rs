@@ -10,6 +10,7 @@ use super::block::Block;
 use super::bounds::NONE;
 use super::joint::{DistanceRule, Joint, JointKind, Motor, Strength};
 use super::manifold::entry;
+use super::rows::Row;
 use crate::math::{Vector64, direction};
 use crate::rigid::{InverseMass, Pose, Twist};
 
@@ -154,6 +155,38 @@ impl Linked {
         if self.is_live() { self.kept_pushes() } else { Default::default() }
     }
 
+    /// Visits the rows in which it holds its bodies in this substep, with the softness of each: at most four.
+    pub(super) fn each_held(&self, mut visit: impl FnMut(Row, f64)) {
+        if !self.is_live() {
+            return;
+        }
+        if self.block.is_used() {
+            return self.block.each_held(&self.joint, self.dt, visit);
+        }
+        let point = |along: Vector64| Row::point(along, self.arms, self.arms);
+        match self.joint.kind {
+            JointKind::Hinge { motor, .. } => {
+                visit(point(Vector64::X), 0.0);
+                visit(point(Vector64::Y), 0.0);
+                if motor.is_some_and(|motor| motor.holds(self.motor, self.dt)) {
+                    visit(Row::turn(), 0.0);
+                }
+            }
+            JointKind::Distance { compliance, damping, rule, .. }
+                if rule == DistanceRule::Exact || self.impulse.x < 0.0 =>
+            {
+                visit(point(self.direction()), self.softness(compliance, damping).0);
+            }
+            _ => (),
+        }
+    }
+
+    /// Way per impulse of a spring beside a damper, and the factor by which the damper holds up its way.
+    fn softness(&self, compliance: f64, damping: f64) -> (f64, f64) {
+        let damped = 1.0 + compliance * damping / self.dt;
+        (compliance / (self.dt * self.dt) / damped, damped)
+    }
+
     fn direction(&self) -> Vector64 {
         self.offset.try_normalize().unwrap_or(Vector64::Y)
     }
@@ -202,8 +235,7 @@ impl Linked {
         displacements: &[Twist],
     ) -> (Twist, Twist) {
         let stretch = self.offset.length() - length;
-        let damped = 1.0 + compliance * damping / self.dt;
-        let softness = compliance / (self.dt * self.dt) / damped;
+        let (softness, damped) = self.softness(compliance, damping);
         let bias = match rule {
             DistanceRule::AtMost => stretch.min(0.0) + if softness > 0.0 { stretch.max(0.0) / damped } else { 0.0 },
             DistanceRule::Exact => {

@@ -255,6 +255,7 @@ impl Contacts {
             let (n, pressed) = (contact.normal, |point: &&Point| point.normal_impulse > 0.0);
             contact.points().iter().filter(pressed).map(move |point| HeldRow {
                 sides: [(contact.a, [n.x, n.y, point.normal_a]), (contact.b, [-n.x, -n.y, -point.normal_b])],
+                softness: 0.0,
             })
         })
     }

@@ -1,7 +1,7 @@
 //! Sets of connected bodies, as trees (union-find).
 
 /// Sets of bodies, each named by its lowest member.
-#[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Debug, Default, serde::Serialize, serde::Deserialize)]
 pub(crate) struct UnionFind {
     parents: Vec<u32>,
 }
