@@ -89,7 +89,7 @@ impl ContactCache {
             && self.rebound.iter().all(of_rebound)
     }
 
-    pub(super) fn new((pair, wall): (u32, u32), surface: Surface, touch: &Touch, frames: [&Frame; 2]) -> ContactCache {
+    pub(super) fn new((pair, wall): (u32, u32), surface: Surface, touch: &Touch, frames: [Frame; 2]) -> ContactCache {
         let of = match touch.reference {
             Reference::First => frames[0],
             Reference::Second | Reference::Points => frames[1],

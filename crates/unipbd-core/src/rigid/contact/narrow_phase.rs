@@ -3,6 +3,8 @@
 //! Contacts are searched once per frame, and within a frame again where a body leaves its prediction. In each substep
 //! their gaps and arms are measured at the poses of the bodies.
 
+use super::blocks::Exact;
+use super::bounds::NONE;
 use super::contact_cache::ContactCache;
 use super::contact_set::{ContactSet, Rows};
 use super::frames::Frames;
@@ -12,8 +14,9 @@ use super::pairs::{Pairs, Span};
 use super::pieces::Pieces;
 use super::reach::Reach;
 use super::step_context::StepContext;
+use crate::math::Vector64;
 use crate::parallel::Parallelism;
-use crate::rigid::{Bodies, InverseMass, Twist, Wall};
+use crate::rigid::{Bodies, Wall};
 use crate::scene::FrictionRule;
 use rayon::prelude::*;
 
@@ -136,21 +139,26 @@ impl NarrowPhase {
         self.elastic
     }
 
-    /// Searches the contacts of the bodies that need it, with the impulses of the last substep; whether there were any.
-    pub fn search(&mut self, bodies: &Bodies, moment: &StepContext) -> bool {
+    /// Evaluates the poses of a substep; whether bodies must be searched before it.
+    pub fn wants(&mut self, bodies: &Bodies, moment: &StepContext) -> bool {
         let added = self.pieces.append_bodies(bodies);
         self.pairs.renumber(&self.pieces, added);
-        self.frames.update(bodies, moment.gravity);
-        let gravity = moment.gravity.length();
-        let marked = self.reach.mark(bodies, moment.dt, gravity);
-        let wanted = self.pairs.note_woken(bodies, &mut self.reach) | marked;
-        if wanted {
-            self.pieces.update(bodies, &self.frames);
-            self.pairs.update(&self.pieces, bodies, &mut self.reach, gravity);
-            self.collide(moment.last_dt);
-            self.adopt();
-        }
-        wanted
+        self.frames.update(bodies);
+        let marked = self.reach.mark(bodies, moment.dt, moment.gravity.length());
+        self.pairs.note_woken(bodies, &mut self.reach) | marked
+    }
+
+    /// Searches the contacts of the bodies that need it, with the impulses of the last substep.
+    pub fn search(&mut self, bodies: &Bodies, moment: &StepContext) {
+        self.pieces.update(bodies, &self.frames);
+        self.pairs.update(&self.pieces, bodies, &mut self.reach, moment.gravity.length());
+        self.collide(moment.last_dt);
+        self.adopt();
+    }
+
+    /// Centre of mass, cosine and sine of the angle of all bodies; the last row is the world.
+    pub fn places(&self) -> &[Exact] {
+        &self.frames.places
     }
 
     /// Measures all contacts at the poses of the search.
@@ -159,25 +167,24 @@ impl NarrowPhase {
         each(rows, self.parallelism, |contact, cache| contact.measure(cache, frames.both((contact.a, contact.b))));
     }
 
-    /// Opens the substep of the search: measures all contacts, scales their impulses by `kept`, and prepares them for
-    /// bodies of these velocities and inverse masses. Their rows go to `and_then`, in order.
+    /// Opens a substep contact by contact: measures all, scales their impulses by `kept`, and prepares them. Their rows
+    /// go to `and_then`, in order.
     pub fn open(
         &mut self,
-        velocities: &[Twist],
-        masses: &[InverseMass],
+        bodies: &Bodies,
         (moment, kept): (&StepContext, f64),
         mut and_then: impl FnMut(&[Contact]),
     ) {
-        let frames = &self.frames;
+        let (frames, active) = (&self.frames, |body: u32| body != NONE && bodies.is_active(body as usize));
+        let pull = |body: u32| if active(body) { bodies.pull(body as usize, moment.gravity) } else { Vector64::ZERO };
         let open = |contact: &mut Contact, cache: &mut ContactCache| {
             contact.age(cache, kept);
-            let of = frames.both((contact.a, contact.b));
-            contact.measure(cache, of);
+            contact.measure(cache, frames.both((contact.a, contact.b)));
             if cache.surface.restitution > 0.0 {
-                cache.pull = (of[0].pull - of[1].pull).dot(contact.normal);
+                cache.pull = (pull(contact.a) - pull(contact.b)).dot(contact.normal);
             }
-            contact.note_velocities(cache, velocities, moment);
-            contact.prepare(masses);
+            contact.note_velocities(cache, &bodies.velocities, moment);
+            contact.prepare(&bodies.inverse_masses);
         };
         let ContactSet { contacts, caches, .. } = &mut self.found;
         if is_parallel(contacts, self.parallelism) {

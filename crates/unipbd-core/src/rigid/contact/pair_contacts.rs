@@ -3,7 +3,7 @@
 use super::collide;
 use super::contact_cache::{ContactCache, Rebound};
 use super::contact_set::ContactSet;
-use super::frames::{Frame, Frames};
+use super::frames::Frames;
 use super::manifold::Contact;
 use super::pairs::{Active, Kind, Pair, Pairs, Span};
 use super::pieces::Pieces;
@@ -63,7 +63,7 @@ impl PairContacts<'_> {
 
     /// Adds a point to the contacts of the pair, which begin at `start`.
     fn add(&self, index: u32, pair: &Pair, touch: &Touch, start: usize, out: &mut ContactSet) {
-        let frames: [&Frame; 2] = [self.frames.of(pair.bodies.0), self.frames.of(pair.bodies.1)];
+        let frames = self.frames.both(pair.bodies);
         let fitting = out.contacts[start..].iter().position(|contact| contact.has_room(touch.normal));
         let place = fitting.map_or(out.contacts.len(), |place| start + place);
         if place == out.contacts.len() {
