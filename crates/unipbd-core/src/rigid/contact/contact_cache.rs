@@ -40,7 +40,7 @@ impl Point {
 }
 
 /// Rarely read data of a contact.
-#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct ContactCache {
     pub pair: u32,
     /// The wall, or `NONE`.

@@ -58,6 +58,12 @@ impl Frames {
         Frame { position: Vector64::new(x, y), rotation: Vector64::new(cosine, sine) }
     }
 
+    /// The angle of a body; 0 for a wall \[rad].
+    #[inline]
+    pub fn angle(&self, body: u32) -> f64 {
+        self.angles.get(body as usize).copied().unwrap_or(0.0)
+    }
+
     /// Those of both bodies of a contact.
     #[inline]
     pub fn both(&self, (a, b): (u32, u32)) -> [Frame; 2] {

@@ -36,7 +36,7 @@ pub(super) struct EffectiveMass {
 pub(super) const ROUNDS: usize = 8;
 
 /// One or two points of two bodies with a common normal.
-#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Contact {
     pub a: u32,
     /// Second body; `NONE` for a wall.

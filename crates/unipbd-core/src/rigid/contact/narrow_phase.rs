@@ -10,7 +10,7 @@ use super::contact_set::{ContactSet, Rows};
 use super::frames::Frames;
 use super::manifold::Contact;
 use super::pair_contacts::PairContacts;
-use super::pairs::{Pairs, Span};
+use super::pairs::{Meeting, Pairs, Span};
 use super::pieces::Pieces;
 use super::reach::Reach;
 use super::step_context::StepContext;
@@ -75,7 +75,7 @@ impl NarrowPhase {
         // Bodies may have come and gone since.
         let pieces = self.walls.at_saved(&saved.pieces, bodies)?;
         let mut pairs = self.pairs.at_saved(saved.pairs, &pieces, bodies)?;
-        let sound = [&saved.found, &saved.frozen].into_iter().all(|set| set.is_sound(&pairs.all));
+        let sound = [&saved.found, &saved.frozen].into_iter().all(|set| set.is_sound(&pairs.all, &pieces));
         if !sound {
             return None;
         }
@@ -120,7 +120,7 @@ impl NarrowPhase {
             };
             let start = to.contacts.len() as u32;
             to.contacts.extend_from_slice(&from.contacts[span.range()]);
-            let surface = self.pairs.all[index as usize].surface;
+            let surface = Meeting::of(&self.pieces, &self.pairs.all[index as usize]).surface;
             let caches = from.caches[span.range()].iter();
             to.caches.extend(caches.map(|cache| ContactCache { pair: index, surface, ..cache.clone() }));
             span.first = start;
@@ -169,12 +169,7 @@ impl NarrowPhase {
 
     /// Opens a substep contact by contact: measures all, scales their impulses by `kept`, and prepares them. Their rows
     /// go to `and_then`, in order.
-    pub fn open(
-        &mut self,
-        bodies: &Bodies,
-        (moment, kept): (&StepContext, f64),
-        mut and_then: impl FnMut(&[Contact]),
-    ) {
+    pub fn open(&mut self, bodies: &Bodies, (moment, kept): (&StepContext, f64), mut and_then: impl FnMut(&[Contact])) {
         let (frames, active) = (&self.frames, |body: u32| body != NONE && bodies.is_active(body as usize));
         let pull = |body: u32| if active(body) { bodies.pull(body as usize, moment.gravity) } else { Vector64::ZERO };
         let open = |contact: &mut Contact, cache: &mut ContactCache| {
@@ -207,17 +202,11 @@ impl NarrowPhase {
     /// Ends the search: the contacts found replace the current ones.
     fn adopt(&mut self) {
         std::mem::swap(&mut self.found, &mut self.coming);
-        for active in &self.pairs.active {
-            self.pairs.spans[active.index as usize] = Span::default();
-        }
-        self.elastic = false;
-        for (cache, index) in self.found.caches.iter().zip(0u32..) {
-            self.elastic |= cache.surface.restitution > 0.0;
-            let span = &mut self.pairs.spans[cache.pair as usize];
-            if span.count == 0 {
-                span.first = index;
-            }
-            span.count += 1;
+        self.elastic = self.found.elastic;
+        let mut first = 0;
+        for (active, &(count, searched)) in self.pairs.active.iter().zip(&self.found.spans) {
+            self.pairs.spans[active.index as usize] = Span { first, count, frozen: false, searched };
+            first += count;
         }
     }
 
