@@ -1,6 +1,6 @@
 //! What the lanes of a block keep from one search to the next: the geometry of their contacts, fixed in the bodies.
 
-use super::blocks::{Block, Exact, Lane};
+use super::contact_block::{Block, Exact, Lane};
 use super::contact_cache::ContactCache;
 use super::manifold::Contact;
 use super::touch::Reference;

@@ -1,6 +1,6 @@
 //! Poses of bodies at the start of a substep, with their rotations evaluated.
 
-use super::blocks::Exact;
+use super::contact_block::Exact;
 use crate::math::{Vector64, direction};
 use crate::rigid::Bodies;
 

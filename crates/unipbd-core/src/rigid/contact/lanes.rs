@@ -2,7 +2,8 @@
 #![allow(unsafe_code)]
 
 use super::Depenetration;
-use super::blocks::{Block, Blocks, Exact, Lane};
+use super::blocks::Blocks;
+use super::contact_block::{Block, Exact, Lane};
 use super::manifold::ROUNDS;
 use crate::simd::Level;
 use crate::simd::wide::{Array, WIDE, Wide};

@@ -1,6 +1,7 @@
 //! Sums of the impulses on bodies and walls over a frame, from contacts in lanes.
 
-use super::blocks::{Block, Blocks, CHUNK, Exact};
+use super::blocks::{Blocks, CHUNK};
+use super::contact_block::{Block, Exact};
 use super::lanes::Rule;
 use super::opening::push_of;
 use crate::math::Vector64;

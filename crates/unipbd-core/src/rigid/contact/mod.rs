@@ -21,6 +21,7 @@ mod bounds;
 mod broad;
 mod collide;
 mod complementarity;
+mod contact_block;
 mod contact_cache;
 mod contact_set;
 mod exposure;

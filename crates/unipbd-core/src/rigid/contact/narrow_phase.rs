@@ -3,8 +3,8 @@
 //! Contacts are searched once per frame, and within a frame again where a body leaves its prediction. In each substep
 //! their gaps and arms are measured at the poses of the bodies.
 
-use super::blocks::Exact;
 use super::bounds::NONE;
+use super::contact_block::Exact;
 use super::contact_cache::ContactCache;
 use super::contact_set::{ContactSet, Rows};
 use super::frames::Frames;
@@ -122,7 +122,7 @@ impl NarrowPhase {
             to.contacts.extend_from_slice(&from.contacts[span.range()]);
             let surface = Meeting::of(&self.pieces, &self.pairs.all[index as usize]).surface;
             let caches = from.caches[span.range()].iter();
-            to.caches.extend(caches.map(|cache| ContactCache { pair: index, surface, ..cache.clone() }));
+            to.caches.extend(caches.map(|cache| ContactCache { pair: index, surface, ..*cache }));
             span.first = start;
         }
         debug_assert!(kept == self.pairs.all.len());

@@ -2,7 +2,7 @@
 //! prepared, and the impulses of the last substep applied. The rules are those of [`Contact`](super::Contact).
 
 use super::anchored::Anchored;
-use super::blocks::{Block, Exact, FAR};
+use super::contact_block::{Block, Exact, FAR};
 use super::step_context::StepContext;
 use crate::simd::wide::{Kernel, Wide};
 
