@@ -1,6 +1,7 @@
 //! Four lanes of f64: one vector of AVX2, two of SSE2, or an array. All give the same bits.
 #![allow(unsafe_code)]
 
+use super::Level;
 use crate::math::Real;
 use std::array::from_fn;
 use std::ops::{Add, Div, Mul, Sub};
@@ -32,6 +33,28 @@ pub(crate) trait Wide:
         unsafe { Self::load(&[f64::from(p), f64::from(q), f64::from(r), f64::from(s)]) }
     }
 
+    /// Four numbers in a row, as [`load`](Self::load): a value proves the instruction set.
+    #[inline(always)]
+    fn row(self, values: &[f64; WIDE]) -> Self {
+        // SAFETY: a value of this type exists.
+        unsafe { Self::load(values) }
+    }
+
+    /// The same of the numbers of particles.
+    #[inline(always)]
+    fn reals(self, values: &[Real; WIDE]) -> Self {
+        // SAFETY: a value of this type exists.
+        unsafe { Self::load_real(values) }
+    }
+
+    /// Columns of the rows with these numbers.
+    #[inline(always)]
+    fn gather(self, all: &[[f64; WIDE]], [p, q, r, s]: &[u32; WIDE]) -> [Self; WIDE] {
+        let rows = [&all[*p as usize], &all[*q as usize], &all[*r as usize], &all[*s as usize]];
+        // SAFETY: a value of this type exists.
+        unsafe { Self::columns(rows) }
+    }
+
     /// A constant.
     fn like(self, value: f64) -> Self;
     /// The exactly rounded square root.
@@ -44,6 +67,13 @@ pub(crate) trait Wide:
     fn where_below(self, limit: Self, yes: Self, no: Self) -> Self;
     /// The four numbers.
     fn to_array(self) -> [f64; WIDE];
+
+    /// The four numbers as those of particles.
+    #[inline(always)]
+    fn to_reals(self) -> [Real; WIDE] {
+        let [p, q, r, s] = self.to_array();
+        [p as Real, q as Real, r as Real, s as Real]
+    }
 
     /// Columns of the four rows.
     ///
@@ -70,6 +100,35 @@ pub(crate) trait Wide:
         let (x, y, z, w) = (x.to_array(), y.to_array(), z.to_array(), w.to_array());
         [[x[0], y[0], z[0], w[0]], [x[1], y[1], z[1], w[1]], [x[2], y[2], z[2], w[2]], [x[3], y[3], z[3], w[3]]]
     }
+}
+
+/// Code for the lanes of any instruction set; it must be inlined, and no closure in it handles lanes: a closure has not
+/// the instruction set of the function around it.
+pub(crate) trait Kernel {
+    /// Runs it; `lanes` is a value of no meaning.
+    fn run<W: Wide>(self, lanes: W);
+}
+
+/// Runs code in the lanes of the chosen instruction set.
+pub(crate) fn run(kernel: impl Kernel) {
+    match Level::best() {
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: the level runs on this machine.
+        Level::Avx512 | Level::Avx2 => unsafe { run_avx2(kernel) },
+        #[cfg(target_arch = "x86_64")]
+        // SAFETY: SSE2 is in the baseline.
+        Level::Sse2 => kernel.run(unsafe { Sse2::load(&[0.0; WIDE]) }),
+        _ => kernel.run(Array([0.0; WIDE])),
+    }
+}
+
+/// # Safety
+/// The machine has AVX2.
+#[cfg(target_arch = "x86_64")]
+#[target_feature(enable = "avx2")]
+unsafe fn run_avx2(kernel: impl Kernel) {
+    // SAFETY: the caller vouches for AVX2.
+    kernel.run(unsafe { Avx2::load(&[0.0; WIDE]) });
 }
 
 /// An array of four.
@@ -275,6 +334,14 @@ mod x86 {
             let mut out = [0.0; WIDE];
             // SAFETY: the store is within the array and asks for no alignment; a value proves AVX2.
             unsafe { _mm256_storeu_pd(out.as_mut_ptr(), self.0) };
+            out
+        }
+        #[cfg(not(feature = "f64"))]
+        #[inline(always)]
+        fn to_reals(self) -> [f32; WIDE] {
+            let mut out = [0.0; WIDE];
+            // SAFETY: the store is within the array and asks for no alignment; a value proves AVX2.
+            unsafe { _mm_storeu_ps(out.as_mut_ptr(), _mm256_cvtpd_ps(self.0)) };
             out
         }
         #[inline(always)]

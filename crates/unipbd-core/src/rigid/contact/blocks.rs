@@ -3,68 +3,39 @@
 //! Contacts that share a body keep their order from block to block, so that a sweep over the blocks moves the bodies as
 //! a sweep over the contacts one after the other would: it is the same for every number of lanes and threads.
 
+use super::anchored::{Anchored, any};
 use super::bounds::NONE;
+use super::contact_block::{Block, Exact, FAR, Lane};
+use super::contact_cache::ContactCache;
 use super::manifold::Contact;
+use super::opening::{Open, Start};
+use super::step_context::StepContext;
 use crate::math::Real;
+use crate::parallel::Parallelism;
 use crate::rigid::{Bodies, InverseMass, Twist};
-use crate::simd::wide::WIDE;
+use crate::simd::wide::{WIDE, run};
+use rayon::prelude::*;
 
-/// One number of each lane. Those that hardly change within a substep have the precision of particles: a sweep is bound
-/// by memory. Impulses, masses and motion do not.
-pub(super) type Lane = [Real; WIDE];
-pub(super) type Exact = [f64; WIDE];
-
-/// Gap of a point that is not there \[m].
-const FAR: f64 = 1e12;
-
-/// Four contacts; a lane without one is all zero, and its bodies are the idle one.
-#[derive(Clone, Default)]
-pub(super) struct Block {
-    /// Rows of the motion of both bodies; walls and free lanes have the idle row behind all bodies.
-    pub bodies: [[u32; WIDE]; 2],
-    pub normal: [Lane; 2],
-    /// By point: gap \[m], and moments about both centres of mass of unit impulses along normal and tangent \[m].
-    pub gap: [Lane; 2],
-    pub normal_a: [Lane; 2],
-    pub normal_b: [Lane; 2],
-    pub tangent_a: [Lane; 2],
-    pub tangent_b: [Lane; 2],
-    /// Responses to normal impulses, and the inverse of their matrix: both points, and across.
-    pub response: [Lane; 3],
-    pub inverse: [Lane; 3],
-    /// By point: effective mass along the normal alone, and along the tangent \[kg].
-    pub alone: [Lane; 2],
-    pub tangent: [Lane; 2],
-    pub friction: Lane,
-    /// 1 for two points with friction.
-    pub turns: Lane,
-    /// Way of moving surfaces along the tangent \[m].
-    pub belt: Lane,
-    /// Size of the smaller body \[m].
-    pub size: Lane,
-    /// Whether a lane resists rolling, the arms, and the effective masses.
-    pub rolls: bool,
-    pub rolling_arm: Lane,
-    pub rolling_mass: Exact,
-    /// Inverse masses and inertias of both bodies.
-    pub linear: [Exact; 2],
-    pub angular: [Exact; 2],
-    /// Impulses by point, and that against rolling.
-    pub normal_impulse: [Exact; 2],
-    pub tangent_impulse: [Exact; 2],
-    pub rolling_impulse: Exact,
-}
+/// Blocks per task, and the minimum number of blocks for parallel tasks.
+pub(super) const CHUNK: usize = 64;
+const PARALLEL_FROM: usize = 512;
 
 /// All contacts of a substep in blocks.
 #[derive(Clone, Default)]
 pub(super) struct Blocks {
     pub all: Vec<Block>,
+    anchored: Vec<Anchored>,
+    /// Whether the impulses of the lanes are newer than those of the contacts.
+    pub live: bool,
     /// Block and lane of each contact, as WIDE x block + lane.
     slots: Vec<u32>,
     /// The contact in each lane, or [`NONE`].
     holders: Vec<[u32; WIDE]>,
     /// Motion of the bodies: along x and y, rotation, and nothing. The last row is idle.
     pub motion: Vec<Exact>,
+    velocities: Vec<Exact>,
+    /// Impulses over the frame on bodies, the idle row, and walls [N s], [N m s].
+    pub loads: Vec<Exact>,
     /// The block after the last one of each body, in the assignment.
     next: Vec<u32>,
     /// Contacts in each block, and a block at or behind it with room.
@@ -139,27 +110,90 @@ impl Blocks {
         block
     }
 
-    /// Fills the lanes with the prepared contacts, block by block.
-    pub fn fill(&mut self, contacts: &[Contact], masses: &[InverseMass], sizes: &[f64]) {
-        for (block, holders) in self.all.iter_mut().zip(&self.holders) {
+    /// Takes the contacts of a search into the lanes, block by block.
+    pub fn take(&mut self, contacts: &[Contact], caches: &[ContactCache], masses: &[InverseMass], sizes: &[f64]) {
+        let idle = masses.len() as u32;
+        self.anchored.resize(self.all.len(), Anchored::default());
+        for ((block, anchored), holders) in self.all.iter_mut().zip(&mut self.anchored).zip(&self.holders) {
+            anchored.clear(holders.contains(&NONE));
             for (lane, &holder) in holders.iter().enumerate().filter(|(_, holder)| **holder != NONE) {
-                contacts[holder as usize].fill(block, lane, masses, sizes);
+                let (contact, cache) = (&contacts[holder as usize], &caches[holder as usize]);
+                block.take(lane, contact, masses, sizes);
+                anchored.take(lane, contact, cache);
+                block.loaded[lane] = if contact.b != NONE {
+                    contact.b
+                } else if cache.wall != NONE {
+                    idle + 1 + cache.wall
+                } else {
+                    idle
+                };
             }
-            block.rolls = block.rolling_arm != [0.0; WIDE];
+            block.rolls = any(&block.rolling_arm);
         }
     }
 
-    /// Gives a contact, by its number, the impulses of its lane.
-    pub fn give_back(&self, number: usize, contact: &mut Contact) {
-        let slot = self.slots[number] as usize;
-        contact.take_impulses(&self.all[slot / WIDE], slot % WIDE);
+    /// Opens a substep: measures and prepares all contacts at these places, with a part of their impulses, and moves
+    /// the bodies by these.
+    pub fn open(
+        &mut self,
+        places: &[Exact],
+        velocities: &[Twist],
+        (moment, kept): (&StepContext, f64),
+        parallelism: Parallelism,
+    ) {
+        self.velocities.clear();
+        if self.anchored.iter().any(|anchored| anchored.slides) {
+            self.velocities.extend(rows(velocities));
+        }
+        let (velocities, motion) = (&self.velocities[..], &mut self.motion[..]);
+        let open = |blocks: &mut [Block], anchored: &[Anchored]| {
+            run(Open { blocks, anchored, places, velocities, moment, kept });
+        };
+        let is_parallel = parallelism == Parallelism::Pool && self.all.len() >= PARALLEL_FROM;
+        if is_parallel {
+            let chunks = self.all.par_chunks_mut(CHUNK).zip(self.anchored.par_chunks(CHUNK));
+            chunks.for_each(|(blocks, anchored)| open(blocks, anchored));
+        }
+        for (blocks, anchored) in self.all.chunks_mut(CHUNK).zip(self.anchored.chunks(CHUNK)) {
+            if !is_parallel {
+                open(blocks, anchored);
+            }
+            // What was prepared is still near the processor.
+            run(Start { blocks, motion });
+        }
+        self.live = true;
+    }
+
+    /// Fills the lanes with contacts that were prepared one by one, block by block.
+    pub fn fill(&mut self, contacts: &[Contact], masses: &[InverseMass], sizes: &[f64]) {
+        for (block, holders) in self.all.iter_mut().zip(&self.holders) {
+            for (lane, &holder) in holders.iter().enumerate().filter(|(_, holder)| **holder != NONE) {
+                block.take(lane, &contacts[holder as usize], masses, sizes);
+                contacts[holder as usize].fill(block, lane);
+            }
+            block.rolls = any(&block.rolling_arm);
+        }
+        self.live = true;
+    }
+
+    /// Gives the contacts the impulses of their lanes, and what was measured there; nothing if they have it.
+    pub fn give_back(&mut self, contacts: &mut [Contact], with_geometry: bool) {
+        if !std::mem::take(&mut self.live) {
+            return;
+        }
+        for (contact, &slot) in contacts.iter_mut().zip(&self.slots) {
+            let (block, lane) = (&self.all[slot as usize / WIDE], slot as usize % WIDE);
+            block.give_impulses(lane, contact);
+            if with_geometry {
+                block.give_geometry(lane, contact);
+            }
+        }
     }
 
     /// Takes the motion of the bodies.
     pub fn take_motion(&mut self, motion: &[Twist]) {
         self.motion.clear();
-        self.motion.extend(motion.iter().map(|of| [of.linear.x, of.linear.y, of.angular, 0.0]));
-        self.motion.push([0.0; WIDE]);
+        self.motion.extend(rows(motion));
     }
 
     /// Gives the motion back to the bodies.
@@ -170,16 +204,15 @@ impl Blocks {
     }
 }
 
+/// Rows of the motion of bodies, and the idle one.
+fn rows(motion: &[Twist]) -> impl Iterator<Item = Exact> + '_ {
+    let row = |of: &Twist| [of.linear.x, of.linear.y, of.angular, 0.0];
+    motion.iter().map(row).chain([[0.0; WIDE]])
+}
+
 impl Contact {
-    /// Fills a lane with the prepared contact.
-    fn fill(&self, block: &mut Block, lane: usize, masses: &[InverseMass], sizes: &[f64]) {
-        let idle = masses.len() as u32;
-        let (a, b) = (self.a as usize, self.b as usize);
-        for (side, body) in [self.a, self.b].into_iter().enumerate() {
-            block.bodies[side][lane] = body.min(idle);
-            let mass = masses.get(body as usize).copied().unwrap_or_default();
-            (block.linear[side][lane], block.angular[side][lane]) = (mass.linear, mass.angular);
-        }
+    /// Fills a lane with what was prepared.
+    fn fill(&self, block: &mut Block, lane: usize) {
         let mut set = |of: fn(&mut Block) -> &mut Lane, value: f64| of(block)[lane] = value as Real;
         set(|block| &mut block.normal[0], self.normal.x);
         set(|block| &mut block.normal[1], self.normal.y);
@@ -187,9 +220,7 @@ impl Contact {
         let (response, inverse, alone) = mass.normal.matrices();
         set(|block| &mut block.friction, mass.friction);
         set(|block| &mut block.belt, mass.belt);
-        set(|block| &mut block.rolling_arm, self.rolling_arm);
         set(|block| &mut block.turns, if self.points().len() == 2 && mass.friction > 0.0 { 1.0 } else { 0.0 });
-        set(|block| &mut block.size, sizes.get(b).map_or(sizes[a], |size| size.min(sizes[a])));
         for k in 0..3 {
             (block.response[k][lane], block.inverse[k][lane]) = (response[k] as Real, inverse[k] as Real);
         }
@@ -199,19 +230,6 @@ impl Contact {
             (block.normal_a[k][lane], block.normal_b[k][lane]) = (point.normal_a as Real, point.normal_b as Real);
             (block.tangent_a[k][lane], block.tangent_b[k][lane]) = (point.tangent_a as Real, point.tangent_b as Real);
             (block.alone[k][lane], block.tangent[k][lane]) = (alone as Real, mass.tangent[k] as Real);
-            block.normal_impulse[k][lane] = point.normal_impulse;
-            block.tangent_impulse[k][lane] = point.tangent_impulse;
-        }
-        block.rolling_impulse[lane] = self.rolling_impulse;
-        let turning = mass.turning.0 + mass.turning.1;
-        block.rolling_mass[lane] = super::complementarity::inverse(turning);
-    }
-
-    fn take_impulses(&mut self, block: &Block, lane: usize) {
-        self.rolling_impulse = block.rolling_impulse[lane];
-        for (k, point) in self.points_mut().iter_mut().enumerate() {
-            point.normal_impulse = block.normal_impulse[k][lane];
-            point.tangent_impulse = block.tangent_impulse[k][lane];
         }
     }
 }

@@ -1,5 +1,5 @@
-//! Broad phase: pairs of pieces that can touch. Boxes are listed in square cells, and cells in buckets; boxes much
-//! larger than a cell are compared with all others.
+//! Broad phase: pairs of pieces that can touch. Boxes whose pairs are sought are listed in square cells, and cells in
+//! buckets, where all others look for them; boxes much larger than a cell are compared with all.
 
 use super::bounds::Bounds;
 use super::pieces::Pieces;
@@ -8,14 +8,19 @@ use crate::math::Vector64;
 /// Cells on either side of the origin: bodies farther away share the last one.
 const FARTHEST: i32 = 1 << 30;
 
-/// The boxes of all pieces by place.
+/// A box, and the cell of its lower left corner.
+type Entry = (u32, [i32; 2]);
+
+/// Boxes by place.
 #[derive(Clone, Default)]
 pub(super) struct Broad {
-    /// The corners of each box, in cells.
-    corners: Vec<[[i32; 2]; 2]>,
+    /// Side of a cell \[m].
+    cell: f64,
+    /// The listed boxes, and their corners in cells.
+    corners: Vec<(u32, [[i32; 2]; 2])>,
     /// Boxes of bucket k: `listed[starts[k]..starts[k + 1]]`.
     starts: Vec<u32>,
-    listed: Vec<u32>,
+    listed: Vec<Entry>,
     large: Vec<u32>,
     extents: Vec<f64>,
 }
@@ -33,22 +38,22 @@ impl Broad {
         found: &mut Vec<(u32, u32)>,
     ) {
         found.clear();
-        self.list(fat);
-        for &a in sought {
-            let of_a = &fat[a as usize];
-            let mut meet = |b: u32| {
+        self.list(fat, sought);
+        for b in 0..fat.len() as u32 {
+            let of_b = &fat[b as usize];
+            let mut meet = |a: u32| {
                 // A pair of two sought pieces is found from both.
                 let once = b != a && (a < b || !is_sought[b as usize]);
-                if once && of_a.overlaps(&fat[b as usize]) && allowed(a, b) {
+                if once && of_b.overlaps(&fat[a as usize]) && allowed(a, b) {
                     found.push((a.min(b), a.max(b)));
                 }
             };
-            if self.large.binary_search(&a).is_ok() {
-                (0..fat.len() as u32).for_each(meet);
+            if self.is_large(of_b) {
+                sought.iter().for_each(|&a| meet(a));
                 continue;
             }
-            self.large.iter().for_each(|&b| meet(b));
-            self.each_near(a, meet);
+            self.large.iter().for_each(|&a| meet(a));
+            self.each_near(of_b, meet);
         }
         for (plane, index) in pieces.half_planes.iter().zip(fat.len() as u32..) {
             for &a in sought {
@@ -62,72 +67,79 @@ impl Broad {
         found.dedup();
     }
 
-    /// Lists all boxes but the large ones in the buckets of the cells they cover.
-    fn list(&mut self, fat: &[Bounds]) {
-        let cell = 2.0 * self.median_extent(fat);
-        let per_metre = 1.0 / cell;
-        self.corners.clear();
-        let corner = |at: Vector64| [column(at.x * per_metre), column(at.y * per_metre)];
-        self.corners.extend(fat.iter().map(|bounds| [corner(bounds.low), corner(bounds.high)]));
+    /// Lists the sought boxes but the large ones in the buckets of the cells they cover.
+    fn list(&mut self, fat: &[Bounds], sought: &[u32]) {
+        self.cell = 2.0 * self.median_extent(fat, sought);
         self.large.clear();
-        let is_large = |bounds: &Bounds| {
-            let extent = (bounds.high - bounds.low).max_element();
-            extent > 4.0 * cell || extent.is_nan() || cell.is_nan()
-        };
-        self.large.extend((0..fat.len() as u32).filter(|&k| is_large(&fat[k as usize])));
-        let buckets = (2 * fat.len()).next_power_of_two().max(2);
+        self.corners.clear();
+        for &k in sought {
+            let bounds = &fat[k as usize];
+            if self.is_large(bounds) {
+                self.large.push(k);
+            } else {
+                self.corners.push((k, self.corners_of(bounds)));
+            }
+        }
+        let buckets = (2 * sought.len()).next_power_of_two().max(2);
         self.starts.clear();
         self.starts.resize(buckets + 1, 0);
-        self.each_cell_of_small(fat.len(), |starts, _, bucket, _| starts[bucket + 1] += 1);
+        self.each_cell(|starts, _, bucket, _| starts[bucket + 1] += 1);
         for k in 0..buckets {
             self.starts[k + 1] += self.starts[k];
         }
         self.listed.clear();
-        self.listed.resize(self.starts[buckets] as usize, 0);
-        self.each_cell_of_small(fat.len(), |starts, listed, bucket, k| {
-            listed[starts[bucket] as usize] = k;
+        self.listed.resize(self.starts[buckets] as usize, (0, [0; 2]));
+        self.each_cell(|starts, listed, bucket, entry| {
+            listed[starts[bucket] as usize] = entry;
             starts[bucket] += 1;
         });
         self.starts.rotate_right(1);
         self.starts[0] = 0;
     }
 
-    fn each_cell_of_small(&mut self, boxes: usize, mut rule: impl FnMut(&mut [u32], &mut [u32], usize, u32)) {
-        let mut large = self.large.iter().copied().peekable();
+    fn each_cell(&mut self, mut rule: impl FnMut(&mut [u32], &mut [Entry], usize, Entry)) {
         let buckets = self.starts.len() - 1;
-        for k in 0..boxes as u32 {
-            if large.next_if_eq(&k).is_some() {
-                continue;
-            }
-            let [[x0, y0], [x1, y1]] = self.corners[k as usize];
+        for &(k, [[x0, y0], [x1, y1]]) in &self.corners {
             for y in y0..=y1 {
                 for x in x0..=x1 {
-                    rule(&mut self.starts, &mut self.listed, bucket([x, y], buckets), k);
+                    rule(&mut self.starts, &mut self.listed, bucket([x, y], buckets), (k, [x0, y0]));
                 }
             }
         }
     }
 
-    /// Visits the small boxes that share with this one the cell where both begin.
-    fn each_near(&self, a: u32, mut meet: impl FnMut(u32)) {
-        let [low, high] = self.corners[a as usize];
+    /// Whether a box is compared with all others.
+    fn is_large(&self, bounds: &Bounds) -> bool {
+        let extent = (bounds.high - bounds.low).max_element();
+        extent > 4.0 * self.cell || extent.is_nan() || self.cell.is_nan()
+    }
+
+    /// Visits the listed boxes that share with this one the cell where both begin.
+    fn each_near(&self, bounds: &Bounds, mut meet: impl FnMut(u32)) {
+        let [low, high] = self.corners_of(bounds);
         let buckets = self.starts.len() - 1;
         for y in low[1]..=high[1] {
             for x in low[0]..=high[0] {
                 let here = bucket([x, y], buckets);
-                for &b in &self.listed[self.starts[here] as usize..self.starts[here + 1] as usize] {
-                    let of_b = self.corners[b as usize][0];
-                    if low[0].max(of_b[0]) == x && low[1].max(of_b[1]) == y {
-                        meet(b);
+                for &(k, first) in &self.listed[self.starts[here] as usize..self.starts[here + 1] as usize] {
+                    if low[0].max(first[0]) == x && low[1].max(first[1]) == y {
+                        meet(k);
                     }
                 }
             }
         }
     }
 
-    fn median_extent(&mut self, fat: &[Bounds]) -> f64 {
+    fn corners_of(&self, bounds: &Bounds) -> [[i32; 2]; 2] {
+        let per_metre = 1.0 / self.cell;
+        let corner = |at: Vector64| [column(at.x * per_metre), column(at.y * per_metre)];
+        [corner(bounds.low), corner(bounds.high)]
+    }
+
+    fn median_extent(&mut self, fat: &[Bounds], sought: &[u32]) -> f64 {
         self.extents.clear();
-        self.extents.extend(fat.iter().map(|b| (b.high - b.low).max_element()));
+        let extent = |&k: &u32| (fat[k as usize].high - fat[k as usize].low).max_element();
+        self.extents.extend(sought.iter().map(extent));
         if self.extents.is_empty() {
             return 1.0;
         }

@@ -27,19 +27,25 @@ pub(super) fn against_half_plane(a: &PieceView, plane: &HalfPlane, margin: f64, 
     }
 }
 
-/// Contacts of two pieces with gaps below `margin`.
-pub(super) fn between(a: &PieceView, b: &PieceView, margin: f64, out: &mut Vec<Touch>) {
+/// Contacts of two pieces with gaps below `margin`; returns the gap below which all were found.
+pub(super) fn between(a: &PieceView, b: &PieceView, margin: f64, out: &mut Vec<Touch>) -> f64 {
     match (a.is_round(), b.is_round()) {
         (true, true) => out.extend(discs((a.vertices[0], a.radius), (b.vertices[0], b.radius), margin)),
         (true, false) => out.extend(disc_on_polygon(a, b, margin)),
         (false, true) => out.extend(disc_on_polygon(b, a, margin).map(Touch::reversed)),
-        (false, false) => polygons(a, b, margin, out),
+        (false, false) => return polygons(a, b, margin, out),
     }
+    margin
 }
 
-/// Contact of two discs of the pieces with these indices.
-pub(super) fn of_discs(pieces: &Pieces, (a, b): (u32, u32), margin: f64) -> Option<Touch> {
-    discs(pieces.disc(a), pieces.disc(b), margin)
+/// The same of two discs, the pieces with these indices.
+pub(super) fn of_discs(pieces: &Pieces, (a, b): (u32, u32), margin: f64, out: &mut Vec<Touch>) -> f64 {
+    let ((p, radius_a), (q, radius_b)) = (pieces.disc(a), pieces.disc(b));
+    let gap = (p - q).length() - radius_a - radius_b;
+    if gap < margin {
+        out.extend(at_points((p, q), [radius_a, radius_b], 0));
+    }
+    if gap < margin { f64::INFINITY } else { gap }
 }
 
 /// Contact of two discs, if their gap is below `margin`.
@@ -98,25 +104,36 @@ enum Ends {
     None,
 }
 
-/// Contacts of two polygons.
-fn polygons(a: &PieceView, b: &PieceView, margin: f64, out: &mut Vec<Touch>) {
-    let (Some(of_b), Some(of_a)) = (widest(a, b, margin, None), widest(b, a, margin, None)) else { return };
+/// Contacts of two polygons; returns the gap below which all were found.
+fn polygons(a: &PieceView, b: &PieceView, margin: f64, out: &mut Vec<Touch>) -> f64 {
+    let (of_b, of_a) = match (widest(a, b, margin, None), widest(b, a, margin, None)) {
+        (Ok(of_b), Ok(of_a)) => (of_b, of_a),
+        (Err(apart), Ok(_)) | (Ok(_), Err(apart)) => return apart,
+        (Err(apart), Err(other)) => return apart.max(other),
+    };
+    over_faces((a, b), (of_a, of_b), margin, out);
+    margin
+}
+
+/// Contacts of two polygons over their widest faces.
+fn over_faces((a, b): (&PieceView, &PieceView), (of_a, of_b): (Axis, Axis), margin: f64, out: &mut Vec<Touch>) {
     let edge = |piece: &PieceView| (piece.vertices[1] - piece.vertices[0]).length();
-    let prefers_a = of_a.apart > of_b.apart + EQUAL * edge(a).min(edge(b));
+    let short = edge(a).min(edge(b));
+    let prefers_a = of_a.apart > of_b.apart + EQUAL * short;
     let axis = if prefers_a { Axis { of_first: true, ..of_a } } else { of_b };
-    let ends = if axis.apart > EQUAL * edge(a).min(edge(b)) { Ends::Corners } else { Ends::Overlap };
+    let ends = if axis.apart > EQUAL * short { Ends::Corners } else { Ends::Overlap };
     if axis.apart == f64::NEG_INFINITY || over_face(a, b, axis, ends, margin, out) || !(a.joined || b.joined) {
         return;
     }
     // The face of largest separation is covered where the other polygon is: the next ones follow, unless the polygons
     // are apart, or the next face is so deep inside that the other polygon cannot have come in through it.
-    let deepest = axis.apart - DEEP * edge(a).min(edge(b));
+    let deepest = axis.apart - DEEP * short;
     if ends == Ends::Corners {
         return;
     }
     let mut last = axis;
     for _ in 0..a.vertices.len() + b.vertices.len() {
-        let (Some(of_b), Some(of_a)) = (widest(a, b, margin, Some(last)), widest(b, a, margin, Some(last))) else {
+        let (Ok(of_b), Ok(of_a)) = (widest(a, b, margin, Some(last)), widest(b, a, margin, Some(last))) else {
             return;
         };
         last = if of_a.apart > of_b.apart { Axis { of_first: true, ..of_a } } else { of_b };
@@ -126,21 +143,34 @@ fn polygons(a: &PieceView, b: &PieceView, margin: f64, out: &mut Vec<Touch>) {
     }
 }
 
-/// The face of `b` with the largest separation from `a`, or the next one after `last`; `None` if the pieces are
-/// farther apart than `margin`, or apart along an edge that is no surface.
-fn widest(a: &PieceView, b: &PieceView, margin: f64, last: Option<Axis>) -> Option<Axis> {
+/// The face of `b` with the largest separation from `a`, or the next one after `last`; their distance if they are farther
+/// apart than `margin`, and minus infinity if they are apart along an edge that is no surface: there, any motion counts.
+fn widest(a: &PieceView, b: &PieceView, margin: f64, last: Option<Axis>) -> Result<Axis, f64> {
     let mut best = Axis { of_first: false, edge: 0, apart: f64::NEG_INFINITY };
     for (edge, (&v, &n)) in b.vertices.iter().zip(b.normals).enumerate() {
-        let apart = a.vertices.iter().map(|&p| (p - v).dot(n)).fold(f64::INFINITY, f64::min);
+        let apart = least_height(a.vertices, v, n);
         let hidden = b.exposed[edge] == HIDDEN;
         if apart > margin || (hidden && apart > 0.0) {
-            return None;
+            return Err(if apart > margin { apart } else { f64::NEG_INFINITY });
         }
         if !hidden && apart > best.apart && last.is_none_or(|last| apart < last.apart) {
             best = Axis { edge, apart, ..best };
         }
     }
-    Some(best)
+    Ok(best)
+}
+
+/// The least height of points over a line through `v`.
+#[inline]
+fn least_height(points: &[Vector64], v: Vector64, normal: Vector64) -> f64 {
+    let height = |p: &Vector64| (*p - v).dot(normal);
+    // Not `min`, which looks for what is no number.
+    let less = |a: f64, b: f64| if a < b { a } else { b };
+    match points {
+        // The most frequent case, without a loop.
+        [p, q, r, s] => less(less(height(p), height(q)), less(height(r), height(s))),
+        _ => points.iter().map(height).fold(f64::INFINITY, less),
+    }
 }
 
 /// The contacts over a face; returns whether there are any.

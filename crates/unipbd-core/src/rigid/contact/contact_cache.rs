@@ -40,7 +40,7 @@ impl Point {
 }
 
 /// Rarely read data of a contact.
-#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct ContactCache {
     pub pair: u32,
     /// The wall, or `NONE`.
@@ -89,7 +89,7 @@ impl ContactCache {
             && self.rebound.iter().all(of_rebound)
     }
 
-    pub(super) fn new((pair, wall): (u32, u32), surface: Surface, touch: &Touch, frames: [&Frame; 2]) -> ContactCache {
+    pub(super) fn new((pair, wall): (u32, u32), surface: Surface, touch: &Touch, frames: [Frame; 2]) -> ContactCache {
         let of = match touch.reference {
             Reference::First => frames[0],
             Reference::Second | Reference::Points => frames[1],

@@ -13,9 +13,11 @@ impl Contacts {
     /// impulses of the substep to the loads of bodies and walls.
     pub fn restitute(&mut self, bodies: &mut Bodies) {
         let slowest = 2.0 * self.gravity * self.dt;
-        if self.narrow_phase.is_elastic() {
-            self.note_impulses();
+        if self.in_lanes() {
+            self.rebounding = false;
+            return self.load_lanes(bodies);
         }
+        self.note_impulses();
         let mut rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches());
         self.rebounding =
             self.narrow_phase.is_elastic() && rows.any(|(contact, cache)| contact.rebounds(cache, slowest));
@@ -49,16 +51,8 @@ impl Contacts {
     /// Adds the impulses of the substep to the bodies and walls they act on.
     fn load(&mut self, bodies: &mut Bodies) {
         let (dt, rebounding, watching) = (self.dt, self.rebounding, self.watch.is_on());
-        // Read and used at once: a heap is larger than what is near the processor.
-        let unread = !self.solver.at_once() && !self.narrow_phase.is_elastic();
-        let (contacts, caches) = self.narrow_phase.rows();
-        for (k, (contact, cache)) in contacts.iter_mut().zip(caches).enumerate() {
-            if unread {
-                self.blocks.give_back(k, contact);
-            }
-            if !contact.is_pressed() {
-                continue;
-            }
+        let rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches());
+        for (contact, cache) in rows.filter(|(contact, _)| contact.is_pressed()) {
             let push = if rebounding { contact.total_push(cache, dt) } else { contact.steady_push(dt) };
             if watching {
                 self.watch.add(contact, cache.wall, push.linear);
@@ -70,6 +64,22 @@ impl Contacts {
                 self.wall_impulses[cache.wall as usize] -= push.linear;
             }
         }
+        self.load_joints(bodies);
+    }
+
+    /// The same of contacts in lanes, whose loads are added with the removal of overlap.
+    fn load_lanes(&mut self, bodies: &mut Bodies) {
+        if self.watch.is_on() {
+            self.note_impulses();
+            let rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches());
+            for (contact, cache) in rows.filter(|(contact, _)| contact.is_pressed()) {
+                self.watch.add(contact, cache.wall, contact.steady_push(self.dt).linear);
+            }
+        }
+        self.load_joints(bodies);
+    }
+
+    fn load_joints(&mut self, bodies: &mut Bodies) {
         for linked in self.joints.iter_mut().filter(|linked| linked.is_live()) {
             linked.load();
             let ((a, b), (on_a, on_b)) = (linked.bodies(), linked.kept_pushes());
@@ -96,7 +106,12 @@ impl Contacts {
 
     fn separate_in_lanes(&mut self, bodies: &Bodies) {
         self.blocks.take_motion(&self.corrections);
-        self.blocks.pass(Rule::Separate(self.settings.depenetration, self.fall()));
+        let rule = Rule::Separate(self.settings.depenetration, self.fall());
+        if self.in_lanes() {
+            self.blocks.load_and_separate((self.dt, self.wall_impulses.len()), rule);
+        } else {
+            self.blocks.pass(rule);
+        }
         self.blocks.give_motion(&mut self.corrections);
         let (poses, displacements) = (&bodies.poses, &bodies.displacements);
         turn_joints(&mut self.joints, &bodies.inverse_masses, &mut self.corrections, |linked, motion| {

@@ -1,6 +1,6 @@
 //! Poses of bodies at the start of a substep, with their rotations evaluated.
 
-use super::bounds::NONE;
+use super::contact_block::Exact;
 use crate::math::{Vector64, direction};
 use crate::rigid::Bodies;
 
@@ -9,16 +9,12 @@ use crate::rigid::Bodies;
 pub(super) struct Frame {
     /// Centre of mass \[m].
     pub position: Vector64,
-    angle: f64,
     /// Cosine and sine of the angle.
     pub rotation: Vector64,
-    /// Acceleration by gravity [m/s^2].
-    pub pull: Vector64,
 }
 
 /// The coordinates of the world, for walls.
-pub(super) const WORLD: Frame =
-    Frame { position: Vector64::ZERO, angle: 0.0, rotation: Vector64::X, pull: Vector64::ZERO };
+const WORLD: Exact = [0.0, 0.0, 1.0, 0.0];
 
 impl Frame {
     /// A direction of the world in the coordinates of the body.
@@ -34,31 +30,43 @@ impl Frame {
 
 /// The coordinates of all bodies.
 #[derive(Clone, Default)]
-pub(super) struct Frames(Vec<Frame>);
+pub(super) struct Frames {
+    /// Centre of mass, cosine and sine of the angle; the last row is the world.
+    pub places: Vec<Exact>,
+    angles: Vec<f64>,
+}
 
 impl Frames {
     /// Evaluates all poses.
-    pub fn update(&mut self, bodies: &Bodies, gravity: Vector64) {
-        self.0.resize(bodies.len(), WORLD);
-        for (id, frame) in self.0.iter_mut().enumerate() {
-            let pose = &bodies.poses[id];
-            if frame.angle != pose.angle {
-                (frame.angle, frame.rotation) = (pose.angle, direction(pose.angle));
+    pub fn update(&mut self, bodies: &Bodies) {
+        self.places.resize(bodies.len() + 1, WORLD);
+        self.angles.resize(bodies.len(), f64::NAN);
+        for ((place, angle), pose) in self.places.iter_mut().zip(&mut self.angles).zip(&bodies.poses) {
+            (place[0], place[1]) = (pose.position.x, pose.position.y);
+            if *angle != pose.angle {
+                let rotation = direction(pose.angle);
+                (*angle, place[2], place[3]) = (pose.angle, rotation.x, rotation.y);
             }
-            frame.position = pose.position;
-            frame.pull = if bodies.is_active(id) { bodies.pull(id, gravity) } else { Vector64::ZERO };
         }
+        self.places[bodies.len()] = WORLD;
     }
 
     /// The coordinates of a body, or of the world for a wall.
     #[inline]
-    pub fn of(&self, body: u32) -> &Frame {
-        if body == NONE { &WORLD } else { &self.0[body as usize] }
+    pub fn of(&self, body: u32) -> Frame {
+        let [x, y, cosine, sine] = self.places[(body as usize).min(self.angles.len())];
+        Frame { position: Vector64::new(x, y), rotation: Vector64::new(cosine, sine) }
+    }
+
+    /// The angle of a body; 0 for a wall \[rad].
+    #[inline]
+    pub fn angle(&self, body: u32) -> f64 {
+        self.angles.get(body as usize).copied().unwrap_or(0.0)
     }
 
     /// Those of both bodies of a contact.
     #[inline]
-    pub fn both(&self, (a, b): (u32, u32)) -> [&Frame; 2] {
+    pub fn both(&self, (a, b): (u32, u32)) -> [Frame; 2] {
         [self.of(a), self.of(b)]
     }
 }

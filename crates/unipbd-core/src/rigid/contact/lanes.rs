@@ -2,10 +2,12 @@
 #![allow(unsafe_code)]
 
 use super::Depenetration;
-use super::blocks::{Block, Blocks, Exact, Lane};
+use super::blocks::Blocks;
+use super::contact_block::{Block, Exact, Lane};
 use super::manifold::ROUNDS;
 use crate::simd::Level;
 use crate::simd::wide::{Array, WIDE, Wide};
+use std::ops::Range;
 
 /// What a pass does with each block.
 #[derive(Clone, Copy)]
@@ -22,15 +24,21 @@ pub(super) enum Rule {
 impl Blocks {
     /// Applies a rule to all blocks, one after the other.
     pub fn pass(&mut self, rule: Rule) {
+        self.pass_over(0..self.all.len(), rule);
+    }
+
+    /// Applies a rule to these blocks, one after the other.
+    pub fn pass_over(&mut self, range: Range<usize>, rule: Rule) {
+        let (blocks, motion) = (&mut self.all[range], &mut self.motion[..]);
         match Level::best() {
             #[cfg(target_arch = "x86_64")]
             // SAFETY: the level runs on this machine.
-            Level::Avx512 | Level::Avx2 => unsafe { pass_avx2(self, rule) },
+            Level::Avx512 | Level::Avx2 => unsafe { pass_avx2(blocks, motion, rule) },
             #[cfg(target_arch = "x86_64")]
             // SAFETY: SSE2 is in the baseline.
-            Level::Sse2 => unsafe { pass::<crate::simd::wide::Sse2>(self, rule) },
+            Level::Sse2 => unsafe { pass::<crate::simd::wide::Sse2>(blocks, motion, rule) },
             // SAFETY: arrays need nothing.
-            _ => unsafe { pass::<Array>(self, rule) },
+            _ => unsafe { pass::<Array>(blocks, motion, rule) },
         }
     }
 }
@@ -39,9 +47,9 @@ impl Blocks {
 /// The machine has AVX2.
 #[cfg(target_arch = "x86_64")]
 #[target_feature(enable = "avx2")]
-unsafe fn pass_avx2(blocks: &mut Blocks, rule: Rule) {
+unsafe fn pass_avx2(blocks: &mut [Block], motion: &mut [Exact], rule: Rule) {
     // SAFETY: passed on to the caller.
-    unsafe { pass::<crate::simd::wide::Avx2>(blocks, rule) }
+    unsafe { pass::<crate::simd::wide::Avx2>(blocks, motion, rule) }
 }
 
 // No closures below: a closure has not the instruction set of the function around it.
@@ -49,23 +57,22 @@ unsafe fn pass_avx2(blocks: &mut Blocks, rule: Rule) {
 /// # Safety
 /// The machine has the instruction set of the lanes.
 #[inline(always)]
-unsafe fn pass<W: Wide>(blocks: &mut Blocks, rule: Rule) {
-    let Blocks { all, motion, .. } = blocks;
+unsafe fn pass<W: Wide>(blocks: &mut [Block], motion: &mut [Exact], rule: Rule) {
     match rule {
         Rule::Solve => {
-            for block in all {
+            for block in blocks {
                 // SAFETY: passed on to the caller.
                 unsafe { solve::<W>(block, motion) }
             }
         }
         Rule::SolveBackward => {
-            for block in all.iter_mut().rev() {
+            for block in blocks.iter_mut().rev() {
                 // SAFETY: passed on to the caller.
                 unsafe { solve::<W>(block, motion) }
             }
         }
         Rule::Separate(how, fall) => {
-            for block in all {
+            for block in blocks {
                 // SAFETY: passed on to the caller.
                 unsafe { separate::<W>(block, motion, &how, fall) }
             }

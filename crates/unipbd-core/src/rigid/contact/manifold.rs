@@ -36,7 +36,7 @@ pub(super) struct EffectiveMass {
 pub(super) const ROUNDS: usize = 8;
 
 /// One or two points of two bodies with a common normal.
-#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct Contact {
     pub a: u32,
     /// Second body; `NONE` for a wall.
@@ -96,7 +96,7 @@ impl Contact {
     }
 
     /// Adds a point without impulse.
-    pub(super) fn add(&mut self, touch: &Touch, cache: &mut ContactCache, frames: [&Frame; 2]) {
+    pub(super) fn add(&mut self, touch: &Touch, cache: &mut ContactCache, frames: [Frame; 2]) {
         let k = self.count as usize;
         self.points[k] = Point { gap: touch.gap(), ..Point::default() };
         cache.anchors[k] = (frames[0].local(touch.on_a), frames[1].local(touch.on_b));
@@ -105,7 +105,7 @@ impl Contact {
     }
 
     /// Measures normal, gaps and arms at the poses of a substep: the anchors are fixed in the bodies.
-    pub(super) fn measure(&mut self, cache: &ContactCache, [a, b]: [&Frame; 2]) {
+    pub(super) fn measure(&mut self, cache: &ContactCache, [a, b]: [Frame; 2]) {
         let [radius_a, radius_b] = cache.radii;
         let arms = |k: usize| {
             let (on_a, on_b) = cache.anchors[k];

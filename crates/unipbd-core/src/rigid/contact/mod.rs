@@ -14,12 +14,14 @@
 //!
 //! a frame ends with [`Contacts::finish_frame`] and [`Bodies::finish_frame`].
 
+mod anchored;
 mod block;
 mod blocks;
 mod bounds;
 mod broad;
 mod collide;
 mod complementarity;
+mod contact_block;
 mod contact_cache;
 mod contact_set;
 mod exposure;
@@ -31,8 +33,10 @@ mod joint;
 mod joint_set;
 mod lanes;
 mod linked;
+mod loads;
 mod manifold;
 mod narrow_phase;
+mod opening;
 mod pair_contacts;
 mod pairs;
 mod pieces;
@@ -193,6 +197,8 @@ impl Contacts {
     /// Ends a frame of length `frame_time` \[s]: mean forces on walls, and sleep. Call it before
     /// [`Bodies::finish_frame`].
     pub fn finish_frame(&mut self, bodies: &mut Bodies, frame_time: f64) {
+        self.note_impulses();
+        self.blocks.give_loads(&mut bodies.contact_loads, &mut self.wall_impulses);
         // Sleeping bodies load their supports as they did when they fell asleep.
         for (contact, cache) in self.narrow_phase.frozen() {
             let push = contact.total_push(cache, 1.0);
@@ -231,6 +237,7 @@ impl Contacts {
     /// Puts bodies to sleep, those that touch each other as one island.
     pub(crate) fn put_to_sleep(&mut self, bodies: &mut Bodies, falling_asleep: &[u32]) {
         if !falling_asleep.is_empty() {
+            self.note_impulses();
             self.islands.resize(bodies.len());
             self.islands.put_to_sleep(bodies, falling_asleep, self.narrow_phase.contacts(), &self.joints);
             self.narrow_phase.freeze(bodies, self.dt);

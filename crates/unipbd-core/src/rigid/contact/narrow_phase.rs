@@ -3,17 +3,20 @@
 //! Contacts are searched once per frame, and within a frame again where a body leaves its prediction. In each substep
 //! their gaps and arms are measured at the poses of the bodies.
 
+use super::bounds::NONE;
+use super::contact_block::Exact;
 use super::contact_cache::ContactCache;
 use super::contact_set::{ContactSet, Rows};
 use super::frames::Frames;
 use super::manifold::Contact;
 use super::pair_contacts::PairContacts;
-use super::pairs::{Pairs, Span};
+use super::pairs::{Meeting, Pairs, Span};
 use super::pieces::Pieces;
 use super::reach::Reach;
 use super::step_context::StepContext;
+use crate::math::Vector64;
 use crate::parallel::Parallelism;
-use crate::rigid::{Bodies, InverseMass, Twist, Wall};
+use crate::rigid::{Bodies, Wall};
 use crate::scene::FrictionRule;
 use rayon::prelude::*;
 
@@ -72,7 +75,7 @@ impl NarrowPhase {
         // Bodies may have come and gone since.
         let pieces = self.walls.at_saved(&saved.pieces, bodies)?;
         let mut pairs = self.pairs.at_saved(saved.pairs, &pieces, bodies)?;
-        let sound = [&saved.found, &saved.frozen].into_iter().all(|set| set.is_sound(&pairs.all));
+        let sound = [&saved.found, &saved.frozen].into_iter().all(|set| set.is_sound(&pairs.all, &pieces));
         if !sound {
             return None;
         }
@@ -117,9 +120,9 @@ impl NarrowPhase {
             };
             let start = to.contacts.len() as u32;
             to.contacts.extend_from_slice(&from.contacts[span.range()]);
-            let surface = self.pairs.all[index as usize].surface;
+            let surface = Meeting::of(&self.pieces, &self.pairs.all[index as usize]).surface;
             let caches = from.caches[span.range()].iter();
-            to.caches.extend(caches.map(|cache| ContactCache { pair: index, surface, ..cache.clone() }));
+            to.caches.extend(caches.map(|cache| ContactCache { pair: index, surface, ..*cache }));
             span.first = start;
         }
         debug_assert!(kept == self.pairs.all.len());
@@ -136,21 +139,26 @@ impl NarrowPhase {
         self.elastic
     }
 
-    /// Searches the contacts of the bodies that need it, with the impulses of the last substep; whether there were any.
-    pub fn search(&mut self, bodies: &Bodies, moment: &StepContext) -> bool {
+    /// Evaluates the poses of a substep; whether bodies must be searched before it.
+    pub fn wants(&mut self, bodies: &Bodies, moment: &StepContext) -> bool {
         let added = self.pieces.append_bodies(bodies);
         self.pairs.renumber(&self.pieces, added);
-        self.frames.update(bodies, moment.gravity);
-        let gravity = moment.gravity.length();
-        let marked = self.reach.mark(bodies, moment.dt, gravity);
-        let wanted = self.pairs.note_woken(bodies, &mut self.reach) | marked;
-        if wanted {
-            self.pieces.update(bodies, &self.frames);
-            self.pairs.update(&self.pieces, bodies, &mut self.reach, gravity);
-            self.collide(moment.last_dt);
-            self.adopt();
-        }
-        wanted
+        self.frames.update(bodies);
+        let marked = self.reach.mark(bodies, moment.dt, moment.gravity.length());
+        self.pairs.note_woken(bodies, &mut self.reach) | marked
+    }
+
+    /// Searches the contacts of the bodies that need it, with the impulses of the last substep.
+    pub fn search(&mut self, bodies: &Bodies, moment: &StepContext) {
+        self.pieces.update(bodies, &self.frames);
+        self.pairs.update(&self.pieces, bodies, &mut self.reach, moment.gravity.length());
+        self.collide(moment.last_dt);
+        self.adopt();
+    }
+
+    /// Centre of mass, cosine and sine of the angle of all bodies; the last row is the world.
+    pub fn places(&self) -> &[Exact] {
+        &self.frames.places
     }
 
     /// Measures all contacts at the poses of the search.
@@ -159,25 +167,19 @@ impl NarrowPhase {
         each(rows, self.parallelism, |contact, cache| contact.measure(cache, frames.both((contact.a, contact.b))));
     }
 
-    /// Opens the substep of the search: measures all contacts, scales their impulses by `kept`, and prepares them for
-    /// bodies of these velocities and inverse masses. Their rows go to `and_then`, in order.
-    pub fn open(
-        &mut self,
-        velocities: &[Twist],
-        masses: &[InverseMass],
-        (moment, kept): (&StepContext, f64),
-        mut and_then: impl FnMut(&[Contact]),
-    ) {
-        let frames = &self.frames;
+    /// Opens a substep contact by contact: measures all, scales their impulses by `kept`, and prepares them. Their rows
+    /// go to `and_then`, in order.
+    pub fn open(&mut self, bodies: &Bodies, (moment, kept): (&StepContext, f64), mut and_then: impl FnMut(&[Contact])) {
+        let (frames, active) = (&self.frames, |body: u32| body != NONE && bodies.is_active(body as usize));
+        let pull = |body: u32| if active(body) { bodies.pull(body as usize, moment.gravity) } else { Vector64::ZERO };
         let open = |contact: &mut Contact, cache: &mut ContactCache| {
             contact.age(cache, kept);
-            let of = frames.both((contact.a, contact.b));
-            contact.measure(cache, of);
+            contact.measure(cache, frames.both((contact.a, contact.b)));
             if cache.surface.restitution > 0.0 {
-                cache.pull = (of[0].pull - of[1].pull).dot(contact.normal);
+                cache.pull = (pull(contact.a) - pull(contact.b)).dot(contact.normal);
             }
-            contact.note_velocities(cache, velocities, moment);
-            contact.prepare(masses);
+            contact.note_velocities(cache, &bodies.velocities, moment);
+            contact.prepare(&bodies.inverse_masses);
         };
         let ContactSet { contacts, caches, .. } = &mut self.found;
         if is_parallel(contacts, self.parallelism) {
@@ -200,17 +202,11 @@ impl NarrowPhase {
     /// Ends the search: the contacts found replace the current ones.
     fn adopt(&mut self) {
         std::mem::swap(&mut self.found, &mut self.coming);
-        for active in &self.pairs.active {
-            self.pairs.spans[active.index as usize] = Span::default();
-        }
-        self.elastic = false;
-        for (cache, index) in self.found.caches.iter().zip(0u32..) {
-            self.elastic |= cache.surface.restitution > 0.0;
-            let span = &mut self.pairs.spans[cache.pair as usize];
-            if span.count == 0 {
-                span.first = index;
-            }
-            span.count += 1;
+        self.elastic = self.found.elastic;
+        let mut first = 0;
+        for (active, &(count, searched)) in self.pairs.active.iter().zip(&self.found.spans) {
+            self.pairs.spans[active.index as usize] = Span { first, count, frozen: false, searched };
+            first += count;
         }
     }
 

@@ -1,14 +1,22 @@
 //! Contacts of one pair: those of the last search while they hold, else searched by the narrow phase.
 
+use super::bounds::NONE;
 use super::collide;
 use super::contact_cache::{ContactCache, Rebound};
 use super::contact_set::ContactSet;
-use super::frames::{Frame, Frames};
+use super::frames::Frames;
 use super::manifold::Contact;
-use super::pairs::{Active, Kind, Pair, Pairs, Span};
+use super::pairs::{Active, Kind, Meeting, Pairs, Searched, Span};
 use super::pieces::Pieces;
 use super::reach::Reach;
 use super::touch::Touch;
+use crate::math::Vector64;
+
+/// Way of two bodies against each other after which their contacts are searched again, relative to the gap below which
+/// contacts are kept.
+const HOLD: f64 = 0.5;
+/// The same of two discs, whose contact is measured anew in each substep.
+const HOLD_OF_DISCS: f64 = 4.0;
 
 /// Input of the contact search of a pair.
 pub(super) struct PairContacts<'a> {
@@ -28,53 +36,114 @@ impl PairContacts<'_> {
     /// Appends the contacts of a pair.
     pub fn pair(&self, active: &Active, out: &mut ContactSet) {
         let (index, span) = (active.index, self.pairs.spans[active.index as usize]);
-        if !self.reach.is_wanted(active.bodies.0) && !self.reach.is_wanted(active.bodies.1) && !span.frozen {
-            out.contacts.extend_from_slice(&self.last.contacts[span.range()]);
-            // The number of a pair changes with the list of pairs.
-            let caches = self.last.caches[span.range()].iter();
-            out.caches.extend(caches.map(|cache| ContactCache { pair: index, ..cache.clone() }));
-            return;
+        let (need, lie) = (self.reach.margin(active.bodies), self.lie(active.bodies));
+        if !span.frozen && (self.holds(&span.searched, active.bodies, need, lie) || !self.is_wanted(active.bodies)) {
+            return self.keep_all(index, span, out);
         }
-        let (pair, start) = (&self.pairs.all[index as usize], out.contacts.len());
+        let (pair, start) = (Meeting::of(self.pieces, &self.pairs.all[index as usize]), out.contacts.len());
+        let margin = need + pair.near;
         let mut touches = std::mem::take(&mut out.touches);
         touches.clear();
-        self.touch(pair, self.reach.margin(pair.bodies) + pair.near, &mut touches);
+        let room = self.touch(&pair, margin, &mut touches);
         for touch in &touches {
-            self.add(index, pair, touch, start, out);
+            self.add((index, active.bodies), &pair, touch, start, out);
         }
+        let hold = match pair.kind {
+            _ if touches.is_empty() => f64::INFINITY,
+            Kind::Discs => HOLD_OF_DISCS * pair.near,
+            _ => HOLD * pair.near,
+        };
         out.touches = touches;
-        self.hand_on(span, start, out);
+        self.hand_on(span, 5.0 * pair.near, start, out);
+        let count = (out.contacts.len() - start) as u32;
+        out.elastic |= count > 0 && pair.surface.restitution > 0.0;
+        let (place, turn) = lie;
+        out.spans.push((count, Searched { place, turn, room, hold }));
     }
 
-    /// Searches for contacts with gaps below `margin`.
-    fn touch(&self, pair: &Pair, margin: f64, touches: &mut Vec<Touch>) {
+    fn is_wanted(&self, (a, b): (u32, u32)) -> bool {
+        self.reach.is_wanted(a) || self.reach.is_wanted(b)
+    }
+
+    /// Appends the contacts of the last search.
+    fn keep_all(&self, index: u32, span: Span, out: &mut ContactSet) {
+        out.spans.push((span.count, span.searched));
+        if span.count == 0 {
+            return;
+        }
+        out.contacts.extend_from_slice(&self.last.contacts[span.range()]);
+        let first = out.caches.len();
+        out.caches.extend_from_slice(&self.last.caches[span.range()]);
+        for cache in &mut out.caches[first..] {
+            out.elastic |= cache.surface.restitution > 0.0;
+            // The number of a pair changes with the list of pairs.
+            cache.pair = index;
+        }
+    }
+
+    /// Place of one body in the coordinates of the other, and their angle; the rotation of a disc does not count.
+    #[inline]
+    fn lie(&self, (a, b): (u32, u32)) -> (Vector64, f64) {
+        let (of_a, of_b) = (self.frames.of(a), self.frames.of(b));
+        let round = |body: u32| body != NONE && self.reach.lever(body) == 0.0;
+        match (round(a), round(b)) {
+            (true, true) => (of_a.position - of_b.position, 0.0),
+            (false, true) => (of_a.local(of_b.position), 0.0),
+            (true, false) => (of_b.local(of_a.position), 0.0),
+            (false, false) => (of_b.local(of_a.position), self.frames.angle(a) - self.frames.angle(b)),
+        }
+    }
+
+    /// Whether no contact with a gap below `need` is missing, and those found are still where they were.
+    #[inline]
+    fn holds(&self, of: &Searched, (a, _): (u32, u32), need: f64, (place, turn): (Vector64, f64)) -> bool {
+        let moved = (place - of.place).length() + (turn - of.turn).abs() * self.reach.lever(a);
+        moved <= of.hold && need + moved <= of.room
+    }
+
+    /// Searches for contacts with gaps below `margin`; returns the gap below which all were found.
+    fn touch(&self, pair: &Meeting, margin: f64, touches: &mut Vec<Touch>) -> f64 {
         let (a, b) = pair.pieces;
         match (pair.kind, self.pieces.half_plane(b)) {
-            (Kind::Discs, _) => touches.extend(collide::of_discs(self.pieces, (a, b), margin)),
+            (Kind::Discs, _) => return collide::of_discs(self.pieces, (a, b), margin, touches),
             (_, Some(plane)) => collide::against_half_plane(&self.pieces.view(a), plane, margin, touches),
             _ => {
                 let bounds = |piece: u32| &self.pieces.bounds[piece as usize];
-                if bounds(a).distance(bounds(b)) <= margin {
-                    collide::between(&self.pieces.view(a), &self.pieces.view(b), margin, touches);
+                let apart = bounds(a).distance(bounds(b));
+                if apart > margin {
+                    return apart;
                 }
+                let (a, b) = (self.pieces.view(a), self.pieces.view(b));
+                let room = collide::between(&a, &b, margin, touches);
+                // Where a part of an outline is no surface, contacts may begin anywhere.
+                let may_begin = touches.is_empty() && room <= margin && (a.hides() || b.hides());
+                return if may_begin { f64::NEG_INFINITY } else { room };
             }
         }
+        margin
     }
 
     /// Adds a point to the contacts of the pair, which begin at `start`.
-    fn add(&self, index: u32, pair: &Pair, touch: &Touch, start: usize, out: &mut ContactSet) {
-        let frames: [&Frame; 2] = [self.frames.of(pair.bodies.0), self.frames.of(pair.bodies.1)];
+    fn add(
+        &self,
+        (index, bodies): (u32, (u32, u32)),
+        pair: &Meeting,
+        touch: &Touch,
+        start: usize,
+        out: &mut ContactSet,
+    ) {
+        let frames = self.frames.both(bodies);
         let fitting = out.contacts[start..].iter().position(|contact| contact.has_room(touch.normal));
         let place = fitting.map_or(out.contacts.len(), |place| start + place);
         if place == out.contacts.len() {
-            out.contacts.push(Contact::new(pair.bodies, touch.normal, pair.rolling_arm));
+            out.contacts.push(Contact::new(bodies, touch.normal, pair.rolling_arm));
             out.caches.push(ContactCache::new((index, pair.wall), pair.surface, touch, frames));
         }
         out.contacts[place].add(touch, &mut out.caches[place], frames);
     }
 
     /// Initialises the contacts from `start` on with the impulses of the same points in the last search.
-    fn hand_on(&self, span: Span, start: usize, out: &mut ContactSet) {
+    fn hand_on(&self, span: Span, near: f64, start: usize, out: &mut ContactSet) {
         if span.count == 0 {
             return;
         }
@@ -82,7 +151,6 @@ impl PairContacts<'_> {
         let scale = if span.frozen { self.dt * self.dt } else { 1.0 };
         let (contacts, caches) = (&known.contacts[span.range()], &known.caches[span.range()]);
         for (contact, cache) in out.contacts[start..].iter_mut().zip(&out.caches[start..]) {
-            let near = 5.0 * self.pairs.all[cache.pair as usize].near;
             keep((contact, cache), (contacts, caches), near, scale);
         }
     }

@@ -9,16 +9,22 @@ use crate::rigid::{Bodies, Surface};
 
 /// Frames for which the enlarged boxes hold a body that goes on as it does.
 const ROOM: f64 = 2.0;
+/// Room of the enlarged boxes in addition, relative to the size of the piece.
+const SIDE: f64 = 0.05;
 
 /// Two pieces, or a piece and a half-plane, that may touch.
-#[derive(Clone, Debug, serde::Serialize, serde::Deserialize)]
+#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(super) struct Pair {
     /// Indices of both in increasing order; pairs are sorted by them.
     key: (u32, u32),
+    /// Their bodies, that of the first contact side first; the second is `NONE` for a wall.
+    pub bodies: (u32, u32),
+}
+
+/// What a search needs of a pair.
+pub(super) struct Meeting {
     /// The piece of the first body of a contact, and the other piece.
     pub pieces: (u32, u32),
-    /// Their bodies; the second is `NONE` for a wall.
-    pub bodies: (u32, u32),
     pub wall: u32,
     pub kind: Kind,
     pub surface: Surface,
@@ -44,6 +50,19 @@ pub(super) struct Span {
     pub first: u32,
     pub count: u32,
     pub frozen: bool,
+    pub searched: Searched,
+}
+
+/// How two bodies lay when their contacts were searched.
+#[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
+pub(super) struct Searched {
+    /// Place of one in the coordinates of the other \[m], and their angle \[rad].
+    pub place: Vector64,
+    pub turn: f64,
+    /// All contacts with a smaller gap were found \[m].
+    pub room: f64,
+    /// Way after which the contacts are searched again \[m].
+    pub hold: f64,
 }
 
 impl Span {
@@ -137,7 +156,7 @@ impl Pairs {
             let key = (places[pair.key.0 as usize], places[pair.key.1 as usize]);
             if key.0 != NONE && key.1 != NONE && may_touch(pieces, &self.excluded, bodies, key.0, key.1) {
                 self.all.push(Pair::new(pieces, key));
-                self.spans.push(span);
+                self.spans.push(Span { searched: Searched::default(), ..span });
             }
         }
         self.fat.clear();
@@ -150,7 +169,6 @@ impl Pairs {
         let first = (pieces.all.len() - added) as u32;
         for pair in self.all.iter_mut().filter(|pair| added > 0 && pair.key.1 >= first) {
             pair.key.1 += added as u32;
-            pair.pieces.1 += added as u32;
         }
     }
 
@@ -167,26 +185,21 @@ impl Pairs {
 
     /// Updates the list to contain all pairs of wanted bodies that can touch until the end of the frame.
     pub fn update(&mut self, pieces: &Pieces, bodies: &Bodies, reach: &mut Reach, gravity: f64) {
-        reach.note(bodies);
-        reach.allow(bodies, gravity, self.all.iter().map(|pair| pair.bodies));
-        let mut changed = false;
-        // A body near a fast body can be as fast after a collision: with the pairs known, both get the same allowance.
-        for _ in 0..2 {
-            self.find_leaving(pieces, bodies, reach);
-            if self.scratch.leaving.is_empty() {
-                break;
-            }
-            if !self.renew(pieces, bodies, reach) {
-                break;
-            }
-            changed = true;
-            reach.allow(bodies, gravity, self.all.iter().map(|pair| pair.bodies));
-        }
-        if changed
-            || self.was_active.len() != bodies.len()
+        if self.was_active.len() != bodies.len()
             || (0..bodies.len()).any(|id| self.was_active[id] != bodies.is_active(id))
         {
             self.list_active(bodies);
+        }
+        reach.note(bodies);
+        reach.allow(bodies, gravity, self.active.iter().map(|pair| pair.bodies));
+        // A body near a fast body can be as fast after a collision: with the pairs known, both get the same allowance.
+        for _ in 0..2 {
+            self.find_leaving(pieces, bodies, reach);
+            if self.scratch.leaving.is_empty() || !self.renew(pieces, bodies, reach) {
+                break;
+            }
+            self.list_active(bodies);
+            reach.allow(bodies, gravity, self.active.iter().map(|pair| pair.bodies));
         }
     }
 
@@ -213,7 +226,7 @@ impl Pairs {
             let (piece, bounds) = (&pieces.all[k as usize], &pieces.bounds[k as usize]);
             self.fat[k as usize] = match piece.body {
                 NONE => *bounds,
-                body => swept(bounds, reach, body, ROOM, 0.05 * piece.size),
+                body => swept(bounds, reach, body, ROOM, SIDE * piece.size),
             };
         }
         let Scratch { broad, leaving, leaves, found, .. } = &mut self.scratch;
@@ -274,8 +287,25 @@ fn swept(bounds: &Bounds, reach: &Reach, body: u32, frames: f64, room: f64) -> B
 
 impl Pair {
     fn new(pieces: &Pieces, key: (u32, u32)) -> Pair {
-        // Pieces of walls come first: the body must be the first of the contact.
-        let (a, b) = if pieces.body_of(key.0) == NONE { (key.1, key.0) } else { key };
+        let (a, b) = ordered(pieces, key);
+        Pair { key, bodies: (pieces.body_of(a), pieces.body_of(b)) }
+    }
+
+    /// The wall of the pair, or `NONE`.
+    pub fn wall(&self, pieces: &Pieces) -> u32 {
+        let (_, b) = ordered(pieces, self.key);
+        pieces.half_plane(b).map_or_else(|| pieces.all[b as usize].wall, |plane| plane.wall)
+    }
+}
+
+/// The pieces of a pair with that of the first body of a contact in front: pieces of walls come first in a key.
+fn ordered(pieces: &Pieces, (a, b): (u32, u32)) -> (u32, u32) {
+    if pieces.body_of(a) == NONE { (b, a) } else { (a, b) }
+}
+
+impl Meeting {
+    pub fn of(pieces: &Pieces, pair: &Pair) -> Meeting {
+        let (a, b) = ordered(pieces, pair.key);
         let piece = &pieces.all[a as usize];
         let plane = pieces.half_plane(b);
         let round = |piece: u32| pieces.view(piece).is_round();
@@ -294,10 +324,8 @@ impl Pair {
             None if round(a) && round(b) => Kind::Discs,
             None => Kind::Pieces,
         };
-        Pair {
-            key,
+        Meeting {
             pieces: (a, b),
-            bodies: (piece.body, pieces.body_of(b)),
             wall,
             kind,
             surface,

@@ -67,6 +67,11 @@ impl PieceView<'_> {
     pub fn is_round(&self) -> bool {
         self.vertices.len() == 1
     }
+
+    /// Whether a part of its outline is no surface.
+    pub fn hides(&self) -> bool {
+        self.joined || self.exposed.contains(&HIDDEN)
+    }
 }
 
 #[derive(Clone, Copy, serde::Serialize, serde::Deserialize)]

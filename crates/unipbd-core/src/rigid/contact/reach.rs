@@ -5,7 +5,6 @@
 //! A body that leaves its allowance, as after an impact, is searched again within the frame.
 
 use super::bounds::NONE;
-use super::manifold::entry;
 use crate::rigid::{Bodies, Pose, Twist};
 
 /// Allowance of a body at rest, relative to its size.
@@ -37,6 +36,13 @@ pub(super) struct Reach {
     pub wanted: Vec<bool>,
     /// Distance of the outline from the centre of mass that rotation moves: 0 for discs \[m].
     levers: Vec<f64>,
+    /// What a pair needs of its bodies, in a row: velocity, speed of the outline by rotation, allowance. The last row is
+    /// that of walls.
+    #[serde(skip)]
+    rows: Vec<[f64; 4]>,
+    /// Fastest motion of each body relative to a nearby one, and that of walls: a buffer.
+    #[serde(skip)]
+    fastest: Vec<f64>,
     /// Length of the frame \[s], and the time since its start.
     frame: f64,
     elapsed: f64,
@@ -117,32 +123,44 @@ impl Reach {
 
     /// Takes the present poses of the wanted bodies as the start of their predictions.
     pub fn note(&mut self, bodies: &Bodies) {
-        for id in (0..bodies.len()).filter(|&id| self.wanted[id]) {
-            let (pose, velocity) = (bodies.poses[id], bodies.velocities[id]);
-            self.bodies[id] = Reference { pose, velocity, time: self.elapsed, ..self.bodies[id] };
+        let anew = self.rows.len() != bodies.len() + 1;
+        self.rows.resize(bodies.len() + 1, [0.0; 4]);
+        self.rows[bodies.len()] = [0.0; 4];
+        for (id, of) in self.bodies.iter_mut().enumerate() {
+            if self.wanted[id] {
+                let (pose, velocity) = (bodies.poses[id], bodies.velocities[id]);
+                *of = Reference { pose, velocity, time: self.elapsed, ..*of };
+            }
+            if self.wanted[id] || anew {
+                let Reference { velocity, allowance, .. } = of;
+                let spin = velocity.angular.abs() * self.levers[id];
+                self.rows[id] = [velocity.linear.x, velocity.linear.y, spin, *allowance];
+            }
         }
     }
 
     /// Computes the allowances of the wanted bodies: a body may be hit by each nearby body.
     pub fn allow(&mut self, bodies: &Bodies, gravity: f64, pairs: impl Iterator<Item = (u32, u32)>) {
-        for id in (0..bodies.len()).filter(|&id| self.wanted[id]) {
-            self.bodies[id].closing = 0.0;
-        }
+        let wall = bodies.len();
+        self.fastest.clear();
+        self.fastest.resize(wall + 1, 0.0);
+        let (all, rows, fastest) = (self.wanted.iter().all(|wanted| *wanted), &self.rows[..], &mut self.fastest[..]);
         for (a, b) in pairs {
-            if self.is_wanted(a) || self.is_wanted(b) {
-                let speed = self.closing(a, b);
-                for body in [a, b] {
-                    if self.is_wanted(body) {
-                        let most = &mut self.bodies[body as usize].closing;
-                        *most = most.max(speed);
+            let (a, b) = (a as usize, (b as usize).min(wall));
+            if all || self.wanted[a] || self.wanted.get(b).is_some_and(|wanted| *wanted) {
+                let speed = closing(&rows[a], &rows[b]);
+                for most in [a, b] {
+                    if speed > fastest[most] {
+                        fastest[most] = speed;
                     }
                 }
             }
         }
-        let ahead = self.ahead();
-        for id in (0..bodies.len()).filter(|&id| self.wanted[id]) {
-            let fall = gravity * self.frame * self.frame;
-            self.bodies[id].allowance = self.bodies[id].closing * ahead + fall + LEAST * bodies.sizes[id];
+        let (ahead, fall) = (self.ahead(), gravity * self.frame * self.frame);
+        for (id, of) in self.bodies.iter_mut().enumerate().filter(|(id, _)| self.wanted[*id]) {
+            of.closing = self.fastest[id];
+            of.allowance = of.closing * ahead + fall + LEAST * bodies.sizes[id];
+            self.rows[id][3] = of.allowance;
         }
     }
 
@@ -152,17 +170,17 @@ impl Reach {
         body != NONE && self.wanted[body as usize]
     }
 
-    /// Speed of two bodies relative to each other, with that of their outlines by rotation [m/s].
-    fn closing(&self, a: u32, b: u32) -> f64 {
-        let (of_a, of_b) = (entry(&self.bodies, a), entry(&self.bodies, b));
-        let spin = |of: &Reference, body: u32| of.velocity.angular.abs() * entry(&self.levers, body);
-        (of_a.velocity.linear - of_b.velocity.linear).length() + spin(&of_a, a) + spin(&of_b, b)
+    /// Largest distance of two bodies that can touch until the end of the frame \[m].
+    #[inline]
+    pub fn margin(&self, (a, b): (u32, u32)) -> f64 {
+        let (of_a, of_b) = (&self.rows[a as usize], &self.rows[(b as usize).min(self.bodies.len())]);
+        closing(of_a, of_b) * self.ahead() + of_a[3] + of_b[3]
     }
 
-    /// Largest distance of two bodies that can touch until the end of the frame \[m].
-    pub fn margin(&self, (a, b): (u32, u32)) -> f64 {
-        let (of_a, of_b) = (entry(&self.bodies, a), entry(&self.bodies, b));
-        self.closing(a, b) * self.ahead() + of_a.allowance + of_b.allowance
+    /// Distance of the outline of a body from its centre of mass that rotation moves; 0 for discs and walls \[m].
+    #[inline]
+    pub fn lever(&self, body: u32) -> f64 {
+        self.levers.get(body as usize).copied().unwrap_or(0.0)
     }
 
     /// The predicted motion of a body until the end of the frame, and how far it may be off \[m].
@@ -171,4 +189,11 @@ impl Reach {
         let turning = of.velocity.angular.abs() * self.levers[body as usize] * self.ahead();
         (of.velocity.scaled(self.ahead()), of.allowance + turning)
     }
+}
+
+/// Speed of two bodies relative to each other, with that of their outlines by rotation [m/s].
+#[inline]
+fn closing(a: &[f64; 4], b: &[f64; 4]) -> f64 {
+    let (x, y) = (a[0] - b[0], a[1] - b[1]);
+    (x * x + y * y).sqrt() + a[2] + b[2]
 }

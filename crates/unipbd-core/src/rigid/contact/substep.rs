@@ -24,41 +24,67 @@ impl Contacts {
         self.islands.resize(bodies.len());
         self.islands.wake_pushed(bodies);
         self.moment = StepContext { dt, last_dt, gravity, slow: 2.0 * self.gravity * dt };
-        let mut found = self.narrow_phase.search(bodies, &self.moment);
+        let mut found = self.search(bodies);
         while bodies.asleep.contains(&true) {
             self.narrow_phase.measure();
             if !self.islands.wake_touched(bodies, self.narrow_phase.contacts(), &self.joints, dt) {
                 break;
             }
-            found |= self.narrow_phase.search(bodies, &self.moment);
+            found |= self.search(bodies);
         }
-        let contacts = self.narrow_phase.contacts();
+        let (contacts, caches) = (self.narrow_phase.contacts(), self.narrow_phase.caches());
         if !self.solver.at_once() && (found || !self.blocks.fits(contacts.len(), bodies.len())) {
             self.blocks.assign(contacts, bodies);
+            if self.in_lanes() {
+                self.blocks.take(contacts, caches, &bodies.inverse_masses, &bodies.sizes);
+            }
         }
         self.narrow_phase.pass(dt);
+    }
+
+    /// Searches the contacts of the bodies that need it; whether there were any.
+    fn search(&mut self, bodies: &Bodies) -> bool {
+        let wanted = self.narrow_phase.wants(bodies, &self.moment);
+        if wanted {
+            self.note_impulses();
+            self.narrow_phase.search(bodies, &self.moment);
+        }
+        wanted
+    }
+
+    /// Whether contacts live in lanes from search to search: a rebound is that of a contact alone.
+    pub(super) fn in_lanes(&self) -> bool {
+        !self.solver.at_once() && !self.narrow_phase.is_elastic()
     }
 
     /// Applies the impulses kept from the last substep. Call it after [`Contacts::begin_substep`], while the bodies have
     /// the velocities they had then.
     pub fn warm_start(&mut self, bodies: &mut Bodies) {
         let step = (&self.moment, self.solver.kept() * self.warm_factor);
-        let (velocities, masses) = (&bodies.velocities[..], &bodies.inverse_masses[..]);
         if self.solver.at_once() {
-            self.narrow_phase.open(velocities, masses, step, |_| ());
+            self.narrow_phase.open(bodies, step, |_| ());
             return self.start_at_once(bodies);
         }
+        let masses = &bodies.inverse_masses[..];
         for linked in &mut self.joints {
             linked.prepare(&bodies.poses, &bodies.displacements, masses, self.dt, self.warm_factor);
         }
-        let motion = &mut bodies.displacements[..];
-        self.narrow_phase.open(velocities, masses, step, |contacts| {
-            for contact in contacts {
-                apply((contact.a, contact.b), &contact.kept_push(), masses, motion);
-            }
-        });
-        self.blocks.fill(self.narrow_phase.contacts(), masses, &bodies.sizes);
-        turn_joints(&mut self.joints, masses, motion, |linked, _| linked.start());
+        let mut motion = std::mem::take(&mut bodies.displacements);
+        if self.in_lanes() {
+            self.blocks.take_motion(&motion);
+            let (places, parallelism) = (self.narrow_phase.places(), self.narrow_phase.parallelism);
+            self.blocks.open(places, &bodies.velocities, step, parallelism);
+            self.blocks.give_motion(&mut motion);
+        } else {
+            self.narrow_phase.open(bodies, step, |contacts| {
+                for contact in contacts {
+                    apply((contact.a, contact.b), &contact.kept_push(), masses, &mut motion);
+                }
+            });
+            self.blocks.fill(self.narrow_phase.contacts(), masses, &bodies.sizes);
+        }
+        turn_joints(&mut self.joints, masses, &mut motion, |linked, _| linked.start());
+        bodies.displacements = motion;
     }
 
     /// The same for contacts that act at once, with masses split among them.
@@ -155,14 +181,13 @@ impl Contacts {
             }
         }
         blocks.give_motion(motion);
+        blocks.live = true;
     }
 
     /// Gives the contacts the impulses that they have so far in this substep.
     pub(crate) fn note_impulses(&mut self) {
-        if !self.solver.at_once() {
-            let contacts = self.narrow_phase.rows().0;
-            contacts.iter_mut().enumerate().for_each(|(k, contact)| self.blocks.give_back(k, contact));
-        }
+        let in_lanes = self.in_lanes();
+        self.blocks.give_back(self.narrow_phase.rows().0, in_lanes);
     }
 }
 
@@ -195,6 +220,17 @@ mod tests {
         (bodies, contacts)
     }
 
+    /// The warm start contact by contact.
+    fn start_alone(contacts: &mut Contacts, bodies: &mut Bodies) {
+        let (step, motion) = ((&contacts.moment, contacts.warm_factor), &mut bodies.displacements.clone());
+        contacts.narrow_phase.open(bodies, step, |contacts| {
+            for contact in contacts {
+                apply((contact.a, contact.b), &contact.kept_push(), &bodies.inverse_masses, motion);
+            }
+        });
+        bodies.displacements.clone_from(motion);
+    }
+
     /// Iterations contact by contact.
     fn iterate_alone(contacts: &mut Contacts, bodies: &mut Bodies) {
         for _ in 0..contacts.settings.iterations {
@@ -216,8 +252,10 @@ mod tests {
         for substep in 0..240 {
             contacts.begin_substep(&mut bodies, DT, GRAVITY);
             bodies.predict(DT, 0.0, GRAVITY);
-            contacts.warm_start(&mut bodies);
+            contacts.note_impulses();
             let (mut alone, mut moved) = (contacts.clone(), bodies.clone());
+            contacts.warm_start(&mut bodies);
+            start_alone(&mut alone, &mut moved);
             iterate_alone(&mut alone, &mut moved);
             contacts.iterate(&mut bodies);
             for (in_lanes, in_turn) in bodies.displacements.iter().zip(&moved.displacements) {
