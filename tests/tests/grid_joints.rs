@@ -1,7 +1,7 @@
 //! Bodies on joints with the pressure grid: the pressure moves them as far as their joints let it.
 
 use unipbd_core::math::Vector64;
-use unipbd_core::scene::Scene;
+use unipbd_core::scene::{PressureGridUse, Scene};
 use unipbd_core::{Phase, Solver};
 use unipbd_tests::{bars, build, mean_of, of_phase, run, scene, shipped};
 
@@ -134,6 +134,26 @@ fn a_counterweight_over_a_pulley_lifts_a_float() {
     });
 }
 
+#[test]
+fn a_moored_buoy_pulls_on_its_rope_with_its_lift() {
+    // With one substep per frame it shook at 2.5 dx/s.
+    let buoy = body("buoy", "radius = 0.15", [1.0, 0.5], 400.0);
+    let rope = "[[solid]]\nname = \"cord\"\ndensity = 200.0\n[[rope]]\nmaterial = \"cord\"\nfrom = [1.0, 0.05]\n\
+                to = [1.0, 0.35]\nheld = \"from\"\nbody = \"buoy\"";
+    let mut scene = tank(2.0, 0.9, &(buoy + rope));
+    assert!(!scene.pressure_grid().used);
+    scene.solver.pressure_grid = PressureGridUse::On;
+    let mut solver = build(&scene, 2);
+    let rest = at_rest(&mut solver);
+    let lift = 600.0 * std::f64::consts::PI * 0.15 * 0.15 * 9.81;
+    bars("buoy under water on a rope", |bars| {
+        bars.within("substeps", f64::from(solver.diagnostics().substeps), 4.0, 5.0);
+        bars.within("pull over its lift", -rest.pull.y / lift, 0.97, 1.03);
+        bars.at_most("mean compression", rest.compression, 0.003);
+        bars.at_most("speed of the buoy [dx/s]", rest.speed, 0.3);
+    });
+}
+
 /// Mean spin [degrees/s] of a body between two times \[s].
 fn mean_spin(solver: &mut Solver, name: &str, [from, to]: [u64; 2]) -> f64 {
     let mut spins = Vec::new();
@@ -149,7 +169,7 @@ fn a_driven_wheel_turns_in_the_spray_it_throws() {
     // Where fluid clung to what leaves it, it turned at 62 degrees/s.
     let mut scene = shipped("water_wheel.toml").scene.into_scene();
     assert!(scene.pressure_grid().reason.contains("not convex"), "{}", scene.pressure_grid().reason);
-    scene.solver.pressure_grid = unipbd_core::scene::PressureGridUse::On;
+    scene.solver.pressure_grid = PressureGridUse::On;
     let with_grid = mean_spin(&mut build(&scene, 2), "driven", [90, 180]);
     bars("wheel with paddles, driven at 200 degrees/s", |bars| {
         bars.within("spin with the grid [degrees/s]", with_grid, -205.0, -160.0);

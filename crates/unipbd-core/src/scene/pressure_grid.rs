@@ -72,9 +72,8 @@ impl Scene {
         if let Substeps::Fixed(count) = self.solver.substeps {
             return PressureGridChoice::off(format!("the number of substeps is fixed at {count}"));
         }
-        let matched = self.body.iter().any(|body| body.solver == BodySolver::ShapeMatching);
-        if matched || !self.rope.is_empty() || !self.solid.is_empty() {
-            return PressureGridChoice::off("ropes and soft bodies need more substeps than it takes");
+        if self.has_tied_particles() {
+            return PressureGridChoice::off("water around ropes and soft bodies is calmer without it");
         }
         if self.solver.sleep {
             return PressureGridChoice::off("a pool that was stirred seldom falls asleep with it");
@@ -99,6 +98,12 @@ impl Scene {
             return PressureGridChoice::off(format!("{particles} particles are too few for it to pay"));
         }
         PressureGridChoice { used: true, reason: "substeps then follow the speed alone".into() }
+    }
+
+    /// Whether particles hang together: as ropes, solids and soft bodies.
+    pub(crate) fn has_tied_particles(&self) -> bool {
+        let matched = |body: &BodyDescription| body.solver == BodySolver::ShapeMatching;
+        !self.rope.is_empty() || !self.solid.is_empty() || self.body.iter().any(matched)
     }
 
     /// Whether a tank is closed on all sides.

@@ -2,6 +2,9 @@
 
 use super::{Scene, TensionLaw};
 
+/// Substeps of a frame of 1/60 s that ropes and soft bodies need with the grid at least: at one a buoy shakes on its rope,
+/// at four it pulls with its lift.
+const TIED: f64 = 4.0 * 60.0;
 /// Way per substep, in spacings, that the Courant-Friedrichs-Lewy condition allows.
 pub(crate) const COURANT: f64 = 0.4;
 /// The same with the pressure grid, at a target compression of 1 %: it goes as the root of the target...
@@ -23,6 +26,8 @@ pub(crate) struct SubstepLaw {
     free: bool,
     /// Whether particles alone hold gas in a closed tank: its buoyancy presses on the lid.
     pub confines_gas: bool,
+    /// Substeps per second that ropes and soft bodies need where the grid holds the pressure.
+    tied: f64,
     /// D/omega of the law C_max = (D/omega) P dt^2/dx^2.
     compressibility: f64,
     /// What surface tension asks for.
@@ -47,12 +52,14 @@ impl SubstepLaw {
                 alone: false,
                 free,
                 confines_gas,
+                tied: if scene.has_tied_particles() { TIED } else { 0.0 },
                 compressibility: 0.0,
                 tension,
             };
         }
         let compressibility = scene.solver.compressibility(scene.gradients());
-        SubstepLaw { spacing, target, courant: COURANT, alone: true, free, confines_gas, compressibility, tension }
+        let (courant, alone, tied) = (COURANT, true, 0.0);
+        SubstepLaw { spacing, target, courant, alone, free, confines_gas, tied, compressibility, tension }
     }
 
     /// Whether the compression of its particles is what carries a fluid that can expand: then it stores energy.
@@ -67,7 +74,7 @@ impl SubstepLaw {
 
     /// Substeps of a frame of this length \[s] by speed [m/s] (CFL), by the trust region (the same for the speed that
     /// this pressure over density [m^2/s^2] may still bring about: the compression within one substep stays below
-    /// an eighth), by the target compression at this pressure, and by surface tension.
+    /// an eighth), by the target compression at this pressure or what holds particles together, and by surface tension.
     pub fn wanted(&self, frame: f64, speed: f64, pressure: f64) -> [f64; 4] {
         let root = (pressure / self.target * self.compressibility).sqrt();
         // The fastest and the most pressed are seldom one, so not the 2 P of Bernoulli.
@@ -75,7 +82,7 @@ impl SubstepLaw {
         [
             frame * speed / (self.courant * self.spacing),
             frame * trusted / (self.courant * self.spacing),
-            frame / self.spacing * root,
+            (frame / self.spacing * root).max(frame * self.tied),
             frame * self.tension.rate,
         ]
     }

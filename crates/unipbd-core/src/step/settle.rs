@@ -13,7 +13,7 @@ use crate::particles::{Particles, displaced};
 use crate::phase::Phase;
 
 /// Settling ends when no particle moves farther than this many spacings in one projection. (Ended at half of the target
-/// compression, in a third of the time, it leaves ramps 1 % too fast and a submerged star 1.3 % too light.)
+/// compression, in a third of the time, it leaves ramps 1 % too fast.)
 const SETTLED: f64 = 1e-5;
 /// Projections that settle a shallow start (measured on columns of 10 to 30 layers).
 const PROJECTIONS: f64 = 100.0;
