@@ -41,7 +41,7 @@ pub const INTRODUCTION: &str = "\
 Made by `cargo run --release -p unipbd-validation -- --full [CASE...]`; do not edit. Each case has a known \
 answer (`crates/unipbd-validation/src/cases`), and its section says when and from which commit it was measured. \
 Resolution is the number of particles along the length of the case (substeps per frame for bodies); the target is \
-`solver.target_compression`. Wall time is that of one thread; pair visits are two passes per iteration over \
+`solver.target_compression`. Times are processor time of one thread; pair visits are two passes per iteration over \
 pi (h/dx)^2 neighbours.
 
 A figure that misses its band says so, and each section counts them. A power near 0, or below, says that an error \
@@ -90,7 +90,7 @@ pub fn with_notes(document: &str) -> String {
 }
 
 fn table(text: &mut String, entries: &[&Entry]) {
-    text.push_str("| resolution | target | figure | value | band | verdict | wall [s] | pair visits |\n");
+    text.push_str("| resolution | target | figure | value | band | verdict | time [s] | pair visits |\n");
     text.push_str("|---|---|---|---|---|---|---|---|\n");
     entries.iter().for_each(|entry| rows(text, entry));
 }
@@ -110,7 +110,7 @@ fn rows(text: &mut String, entry: &Entry) {
             "**misses**"
         };
         let cost = if index == 0 {
-            format!("{:.2} | {:.1e}", outcome.cost.wall.as_secs_f64(), outcome.cost.pair_visits)
+            format!("{:.2} | {:.1e}", outcome.cost.processor.as_secs_f64(), outcome.cost.pair_visits)
         } else {
             " | ".to_owned()
         };
