@@ -182,7 +182,8 @@ pub fn measure_double() -> Result<Vec<Reading>, Failure> {
     let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
     let features = ["--no-default-features", "--features", "f64"];
     let arguments = ["run", "--quiet", "--manifest-path", manifest, "--example", "precision"];
-    let output = Command::new(cargo).args(arguments).args(features).output().map_err(|error| Failure(error.to_string()))?;
+    let output =
+        Command::new(cargo).args(arguments).args(features).output().map_err(|error| Failure(error.to_string()))?;
     let readings = String::from_utf8(output.stdout).ok().filter(|_| output.status.success());
     readings
         .and_then(|text| parse(&text))

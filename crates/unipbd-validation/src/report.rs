@@ -53,7 +53,8 @@ pub fn section(entries: &[Entry]) -> Option<(String, String)> {
     let case = entries.first()?.line.case;
     let (grid, own): (Vec<&Entry>, Vec<&Entry>) = entries.iter().partition(|entry| entry.line.grid);
     let heading = case.name.replace('_', " ");
-    let mut text = format!("Truth: {}.\n\nMeasured {}, on {}.\n\n{}\n\n", case.truth, stamp(), machine(), tally(entries));
+    let mut text =
+        format!("Truth: {}.\n\nMeasured {}, on {}.\n\n{}\n\n", case.truth, stamp(), machine(), tally(entries));
     table(&mut text, &own);
     text.push_str(&work(&own));
     text.push_str(&orders(&own));
