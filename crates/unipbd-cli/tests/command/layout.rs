@@ -37,7 +37,7 @@ fn a_layout_frames_the_scene_of_its_log() {
 fn a_run_writes_the_layout_beside_its_log_and_says_how_to_open_them() {
     let place = Place::new();
     let ended = place.run(&["drop.toml", "--layout", "drop.json"]).exits(0);
-    assert!(ended.stdout().contains("Lichtblick with the layout drop.json"), "{}", ended.stdout());
+    assert!(ended.stdout().contains("Lichtblick, layout: drop.json"), "{}", ended.stdout());
     let written = std::fs::read_to_string(place.path("drop.json")).unwrap();
     assert_eq!(place.run(&["layout", "drop.mcap"]).exits(0).stdout(), written);
     let ended = place.run(&["drop.toml"]).exits(0);

@@ -36,7 +36,7 @@ fn a_run_whose_output_breaks_leaves_the_older_log_alone() {
         .spawn()
         .unwrap();
     drop(child.stdout.take());
-    crate::support::Ended(child.wait_with_output().unwrap()).exits(1);
+    crate::support::Ended(child.wait_with_output().unwrap()).exits(141);
     assert_eq!(std::fs::read_to_string(place.path("drop.mcap")).unwrap(), "precious");
     place.run(&["info", "drop.partial.mcap"]).exits(0);
 }
