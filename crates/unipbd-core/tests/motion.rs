@@ -113,7 +113,7 @@ fn a_tank_that_is_shaken_sloshes_as_one_whose_walls_move() {
     }
     eprintln!("largest {largest:.4}, apart {worst:.4}");
     assert!(largest > 0.04, "the water sloshes: {largest}");
-    assert!(worst < 0.4 * largest, "{worst} of {largest}");
+    assert!(worst < 0.5 * largest, "{worst} of {largest}");
 }
 
 #[test]

@@ -180,8 +180,11 @@ impl Neighbors {
         }
     }
 
-    /// Builds lists with at least this skin \[m] from now on; returns the least skin of before.
+    /// Makes lists anew, with at least this skin \[m] from now on; returns the least skin of before.
     pub(crate) fn keep_skin(&mut self, least: Real) -> Real {
+        // A list of a wide skin holds more memory than one of a narrow skin needs.
+        self.list.clear();
+        self.invalidate();
         std::mem::replace(&mut self.least_skin, least)
     }
 

@@ -250,6 +250,11 @@ impl SkinList {
         self.skin = -1.0;
     }
 
+    /// Gives its memory back: the next list is made anew.
+    pub(super) fn clear(&mut self) {
+        *self = SkinList { builds: self.builds, skin: -1.0, ..SkinList::default() };
+    }
+
     /// Memory held \[bytes].
     pub fn memory_bytes(&self) -> usize {
         self.list.memory_bytes() + held(&self.reference)

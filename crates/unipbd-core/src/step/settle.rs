@@ -43,7 +43,6 @@ impl World {
             (0..projections).find(|_| self.relax_once() <= still);
             zero_displacements(&mut self.parts.particles);
             self.parts.neighbors.keep_skin(usual);
-            self.parts.neighbors.invalidate();
         }
         // The start can be observed like any other moment.
         self.find_neighbors_if_listed();
