@@ -13,7 +13,7 @@ CHART = ROOT / "docs" / "images" / "time_at_equal_error.svg"
 # Row of the table, what the chart calls it, what stands beside the bar, its colour.
 BARS = [
     ("unipbd, pressure grid, h = 2 dx, target 10 %", "unipbd, coarse", "", "#2f7fd6"),
-    ("unipbd, pressure grid, h = 2 dx, target 1 %", "unipbd, fine", "", "#7db4ec"),
+    ("unipbd, pressure grid, h = 3 dx, target 1 % (default)", "unipbd, default", "", "#7db4ec"),
     ("SPlisHSPlasH 2.19 DFSPH 0.1 %", "SPlisHSPlasH, 0.1 %", "", "#9aa7b4"),
     ("SPlisHSPlasH 2.19 DFSPH 1 %", "SPlisHSPlasH, 1 %", "", "#9aa7b4"),
     ("salva2d 0.11 DFSPH 0.3 %", "salva2d, 0.3 %", "", "#9aa7b4"),
