@@ -146,9 +146,13 @@ impl Lattice {
     /// Whether a place, in cells, has all its nodes, however it is rounded.
     #[inline(always)]
     pub fn holds(&self, place: Vector) -> bool {
-        let (right, top) = (self.width as Real - 0.5, self.height as Real - 0.5);
         let [along_x, along_y] = self.images.periods.map(|period| period > 0);
-        (along_x || place.x > 0.5 && place.x < right) && (along_y || place.y > 0.5 && place.y < top)
+        // Along a periodic axis the rim holds images: all of the period is inside, and a rounding more.
+        let inside = |repeats: bool, at: Real, cells: usize| {
+            let rim = if repeats { -0.25 } else { 0.5 };
+            at > rim && at < cells as Real - rim
+        };
+        inside(along_x, place.x, self.width) && inside(along_y, place.y, self.height)
     }
 
     /// The cell that holds a place, in cells, if it is one of the box.
@@ -194,4 +198,21 @@ impl Lattice {
 /// Cells from one row of `width` to the next: one more on each side, and as many blocks as hold them.
 pub(super) fn stride(width: usize) -> usize {
     (width + 2).next_multiple_of(BLOCK)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn places_beyond_a_period_or_that_are_no_numbers_are_not_held() {
+        let lattice = Lattice { width: 8, height: 8, images: Images { periods: [8, 0] }, ..Lattice::default() };
+        for at in [0.0, 3.0, Real::from(8u8).next_down()] {
+            assert!(lattice.holds(Vector::new(at, 4.0)), "{at}");
+        }
+        for at in [-5332.0, 9.0, 1e30, Real::NAN, Real::NEG_INFINITY] {
+            assert!(!lattice.holds(Vector::new(at, 4.0)), "{at}");
+        }
+        assert!(!lattice.holds(Vector::new(4.0, 0.2)), "a rim without images holds no place");
+    }
 }
