@@ -14,5 +14,5 @@ mod sources;
 pub use bars::{Bars, bars, full_size, say};
 pub use groups::{Kick, Prescribed};
 pub use measure::{Spread, crowded, is_near, kinetic_energy, mean_of, of_phase};
-pub use scenes::{build, load, repository, run, scene, shipped};
+pub use scenes::{build, load, repository, run, scene, shipped, water};
 pub use sources::{code_of, rust_files};

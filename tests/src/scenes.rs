@@ -44,3 +44,20 @@ pub fn run(solver: &mut Solver, frames: u64, mut look: impl FnMut(&Solver)) {
         look(solver);
     }
 }
+
+/// Water on the floor, a block of this width and depth from the origin, and more tables.
+#[track_caller]
+pub fn water(width: f64, depth: f64, spacing: f64, rest: &str) -> Scene {
+    scene(&format!(
+        r#"
+        spacing = {spacing}
+        [[liquid]]
+        name = "water"
+        [[block]]
+        material = "water"
+        min = [0.0, 0.0]
+        max = [{width}, {depth}]
+        {rest}
+        "#
+    ))
+}

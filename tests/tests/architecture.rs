@@ -9,7 +9,7 @@ use unipbd_tests::{code_of as code, repository, rust_files as files};
 /// The table of ARCHITECTURE.md lists the same layers.
 const LAYERS: [&[&str]; 17] = [
     &["math"],
-    &["phase", "gauge_kind", "rng", "parallel"],
+    &["phase", "gauge_kind", "rng", "parallel", "union_find"],
     &["bytes", "periodic"],
     &["particles", "rows", "shapes"],
     &["observe", "scene"],

@@ -3,28 +3,14 @@
 use unipbd_core::math::Vector64;
 use unipbd_core::scene::{PressureGridUse, Scene};
 use unipbd_core::{Phase, Solver};
-use unipbd_tests::{bars, build, mean_of, of_phase, run, scene, shipped};
+use unipbd_tests::{bars, build, mean_of, of_phase, run, shipped, water};
 
 const DX: f64 = 0.025;
 
 /// A tank of this width, filled to this depth.
 fn tank(width: f64, depth: f64, rest: &str) -> Scene {
-    scene(&format!(
-        r#"
-        spacing = {DX}
-        [[liquid]]
-        name = "water"
-        [[block]]
-        material = "water"
-        min = [0.0, 0.0]
-        max = [{width:?}, {depth:?}]
-        [[tank]]
-        min = [0.0, 0.0]
-        max = [{width:?}, 2.0]
-        open = ["top"]
-        {rest}
-        "#
-    ))
+    let tank = format!("[[tank]]\nmin = [0.0, 0.0]\nmax = [{width}, 2.0]\nopen = [\"top\"]");
+    water(width, depth, DX, &format!("{tank}\n{rest}"))
 }
 
 /// Means over the two seconds after the third.
@@ -53,9 +39,11 @@ fn at_rest(solver: &mut Solver) -> Rest {
     }
 }
 
-/// Level of the water in a tank of this width with this area of bodies below it \[m].
-fn level(solver: &Solver, width: f64, below: f64) -> f64 {
-    (of_phase(solver, Phase::Liquid).count() as f64 * DX * DX + below) / width
+/// How much too deep the first body lies \[dx] in a tank of this width, with this area of bodies below the level, where
+/// its draft should be this and half of its height is `half` \[m].
+fn too_deep((solver, rest): (&Solver, &Rest), width: f64, below: f64, draft: f64, half: f64) -> f64 {
+    let level = (of_phase(solver, Phase::Liquid).count() as f64 * DX * DX + below) / width;
+    (level - draft + half - rest.heights[0]) / DX
 }
 
 #[track_caller]
@@ -95,9 +83,8 @@ fn a_float_lies_at_the_draft_that_its_sinker_gives_it() {
     let below = (masses[0] + masses[1]) / 1000.0;
     let disc = masses[1] / 2500.0;
     let draft = (below - disc) / 0.6;
-    let exact = level(&solver, 2.0, below) - draft + 0.15;
     bars("float on a sinker", |bars| {
-        bars.within("draft off [dx]", (exact - rest.heights[0]) / DX, -0.15, 0.15);
+        bars.within("draft off [dx]", too_deep((&solver, &rest), 2.0, below, draft, 0.15), -0.15, 0.15);
         bars.within("pull over the weight of the sinker in water", -rest.pull.y / (1500.0 * disc * 9.81), 0.98, 1.02);
         bars.at_most("mean compression", rest.compression, 0.003);
     });
@@ -111,9 +98,8 @@ fn a_boat_lies_at_the_draft_of_hull_and_mast() {
     let mut solver = build_with_grid(&tank(2.0, 0.8, &(bodies + weld)));
     let rest = at_rest(&mut solver);
     let below = (84.0 + 7.5) / 1000.0;
-    let exact = level(&solver, 2.0, below) - below / 0.8 + 0.15;
     bars("boat with a mast", |bars| {
-        bars.within("draft off [dx]", (exact - rest.heights[0]) / DX, -0.15, 0.15);
+        bars.within("draft off [dx]", too_deep((&solver, &rest), 2.0, below, below / 0.8, 0.15), -0.15, 0.15);
         bars.within("load on the mast's foot over its weight", rest.pull.y / (7.5 * 9.81), 0.98, 1.02);
     });
 }
@@ -127,9 +113,8 @@ fn a_counterweight_over_a_pulley_lifts_a_float() {
     let mut solver = build_with_grid(&tank(1.6, 0.8, &(bodies + pulley)));
     let rest = at_rest(&mut solver);
     let below = (128.0 - 48.0) / 1000.0;
-    let exact = level(&solver, 1.6, below) - below / 0.4 + 0.2;
     bars("float on a pulley", |bars| {
-        bars.within("draft off [dx]", (exact - rest.heights[0]) / DX, -0.15, 0.15);
+        bars.within("draft off [dx]", too_deep((&solver, &rest), 1.6, below, below / 0.4, 0.2), -0.15, 0.15);
         bars.within("pull over the counterweight", rest.pull.y / (48.0 * 9.81), 0.98, 1.02);
     });
 }

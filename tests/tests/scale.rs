@@ -106,7 +106,7 @@ const EXACT_WITHOUT_DIFFUSION: [Scale; 2] =
 
 /// Runs a scene at all scales and counts the looks that differ.
 #[track_caller]
-fn same_at_any_scale(case: &'static str, frames: u64, text: &str) {
+pub(crate) fn same_at_any_scale(case: &'static str, frames: u64, text: &str) {
     let expected = story(text, frames, Scale::ONE);
     assert!(expected.iter().flatten().all(|value| value.is_finite()));
     bars(case, |bars| {
@@ -139,14 +139,14 @@ fn first_difference(expected: &[f64], found: &[f64]) -> String {
 }
 
 /// A tank over the whole of a scene of this size.
-const TANK: &str = "
+pub(crate) const TANK: &str = "
 [[tank]]
 min = [0.0, 0.0]
 max = [<1.0 m>, <1.0 m>]
 open = [\"top\"]
 ";
 
-const HEAD: &str = "
+pub(crate) const HEAD: &str = "
 spacing = <0.03125 m>
 fps = <60 1/s>
 duration = <4 s>
@@ -295,132 +295,6 @@ fn a_closed_box_of_gas_over_liquid_is_the_same_at_any_scale() {
         max = [<1.0 m>, <1.0 m>]"#
     );
     same_at_any_scale("closed box", 40, &text);
-}
-
-#[test]
-fn a_heap_of_bodies_is_the_same_at_any_scale() {
-    for contacts in ["", "method = \"split_jacobi\""] {
-        let text = format!(
-            r#"{HEAD}
-            [contacts]
-            {contacts}
-            [[body]]
-            name = "box"
-            size = [<0.1 m>, <0.1 m>]
-            position = [<0.3 m>, <0.05 m>]
-            density = <1000 kg/m2>
-            copies = {{ columns = 3, rows = 3, step = [<0.11 m>, <0.1 m>] }}
-            [[body]]
-            name = "ball"
-            radius = <0.06 m>
-            position = [<0.33 m>, <0.8 m>]
-            velocity = [<0.2 m/s>, <-2.0 m/s>]
-            restitution = 0.6
-            density = <3000 kg/m2>
-            linear_damping = <0.1 1/s>
-            [[body]]
-            name = "stuck"
-            radius = <0.06 m>
-            position = [<0.85 m>, <0.03 m>]
-            density = <1000 kg/m2>
-            [[body]]
-            name = "arm"
-            size = [<0.2 m>, <0.04 m>]
-            position = [<0.8 m>, <0.6 m>]
-            density = <1000 kg/m2>
-            [[joint]]
-            kind = "hinge"
-            body = "arm"
-            at = [<0.72 m>, <0.6 m>]
-            motor_speed_deg = <90 1/s>
-            motor_torque = <2 Nm>
-            [[joint]]
-            kind = "rod"
-            body = "ball"
-            other = "arm"
-            at = [<0.33 m>, <0.8 m>]
-            other_at = [<0.88 m>, <0.6 m>]
-            compliance = <0.001 m/N>
-            damping = <3 Ns/m>
-            {TANK}"#
-        );
-        same_at_any_scale("heap", 90, &text);
-    }
-}
-
-#[test]
-fn bodies_in_water_are_the_same_at_any_scale() {
-    for solver in ["pressure_grid = \"off\"", "pressure_grid = \"on\""] {
-        let text = format!(
-            r#"{HEAD}
-            [solver]
-            {solver}
-            [[liquid]]
-            name = "water"
-            density = <1000 kg/m2>
-            [[block]]
-            material = "water"
-            min = [0.0, 0.0]
-            max = [<1.0 m>, <0.4 m>]
-            [[body]]
-            name = "float"
-            size = [<0.2 m>, <0.15 m>]
-            position = [<0.3 m>, <0.5 m>]
-            density = <500 kg/m2>
-            [[body]]
-            name = "stone"
-            radius = <0.08 m>
-            position = [<0.7 m>, <0.7 m>]
-            density = <2500 kg/m2>
-            [[body]]
-            name = "paddle"
-            kind = "kinematic"
-            size = [<0.1 m>, <0.3 m>]
-            position = [<0.5 m>, <0.2 m>]
-            motion = {{ amplitude = [<0.1 m>, 0.0], frequency = <1 1/s> }}
-            [[body]]
-            name = "ramp"
-            kind = "static"
-            outline = [[0.0, 0.0], [<0.3 m>, 0.0], [<0.3 m>, <0.15 m>]]
-            position = [<0.7 m>, 0.0]
-            {TANK}"#
-        );
-        same_at_any_scale("bodies in water", 40, &text);
-    }
-}
-
-#[test]
-fn ropes_and_soft_bodies_are_the_same_at_any_scale() {
-    let text = format!(
-        r#"{HEAD}
-        [[liquid]]
-        name = "water"
-        density = <1000 kg/m2>
-        [[solid]]
-        name = "cord"
-        density = <200 kg/m2>
-        [[block]]
-        material = "water"
-        min = [0.0, 0.0]
-        max = [<1.0 m>, <0.2 m>]
-        [[rope]]
-        material = "cord"
-        from = [<0.1 m>, <0.8 m>]
-        to = [<0.9 m>, <0.8 m>]
-        held = "both"
-        compliance = <1e-7 m/N>
-        [[body]]
-        name = "soft"
-        solver = "shape_matching"
-        compliance = <1e-6 m/N>
-        damping = 0.0
-        density = <500 kg/m2>
-        size = [<0.25 m>, <0.2 m>]
-        position = [<0.5 m>, <0.5 m>]
-        angle_deg = 20.0
-        {TANK}"#
-    );
-    same_at_any_scale("soft things", 40, &text);
 }
 
 /// Distance that a dam break has run and its energy, at times of its own, over those of scale one.

@@ -35,6 +35,7 @@ mod sleep;
 mod sources;
 pub mod state;
 pub mod step;
+mod union_find;
 pub mod walls;
 
 pub use build::BuildOptions;

@@ -18,7 +18,7 @@ mod output;
 mod partial_logs;
 mod pictures;
 mod quantities;
-#[path = "../shared/records.rs"]
+#[path = "../common/records.rs"]
 mod records;
 mod recover;
 mod signals;

@@ -4,6 +4,6 @@
 #[path = "../../../../tests/fuzz/harness.rs"]
 mod harness;
 mod logs;
-#[path = "../shared/records.rs"]
+#[path = "../common/records.rs"]
 mod records;
 mod scenes;

@@ -2,7 +2,7 @@
 
 use super::RigidBodies;
 use crate::math::Vector64;
-use crate::rigid::contact::UnionFind;
+use crate::union_find::UnionFind;
 
 /// Way of a body in a substep, relative to its size: beyond it contacts are found at one end of a body only.
 const WAY: f64 = 0.5;

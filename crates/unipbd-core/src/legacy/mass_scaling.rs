@@ -4,8 +4,9 @@
 //! a place, from its lowest body), so that the factor does not depend on where the heap stands.
 
 use crate::math::Vector64;
-use crate::rigid::contact::{Contact, UnionFind, entry};
+use crate::rigid::contact::{Contact, entry};
 use crate::rigid::{Bodies, InverseMass};
+use crate::union_find::UnionFind;
 
 /// Limit of the mass scale. Larger scales would drown impulses in rounding.
 const LARGEST: f64 = 1e6;

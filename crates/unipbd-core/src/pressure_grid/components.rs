@@ -5,7 +5,7 @@ use super::images::Images;
 use super::spans::Spans;
 use crate::bytes::held;
 use crate::math::Real;
-use crate::rigid::contact::UnionFind;
+use crate::union_find::UnionFind;
 
 /// A coupling with air at least this large connects a cell with it: less is only there to keep the system regular.
 const CONNECTED: Real = 1e-3;

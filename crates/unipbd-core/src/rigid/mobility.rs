@@ -5,8 +5,8 @@
 //! joints share one matrix W, so that a load on one moves the others too; a spring gives way, which adds to J W J^T.
 
 use super::InverseMass;
-use super::contact::UnionFind;
 use crate::scene::MOST_JOINED;
+use crate::union_find::UnionFind;
 use std::ops::Range;
 
 /// A row of a constraint that holds two bodies.

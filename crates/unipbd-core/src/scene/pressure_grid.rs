@@ -2,7 +2,9 @@
 
 use super::{BodyDescription, BodyKind, BodySolver, JointDescription, JointRule, Scene, Substeps};
 use crate::shapes::Shape;
+use crate::union_find::UnionFind;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
 
 /// Fewer particles fill so few cells that the grid is all surface.
 const LEAST_PARTICLES: f64 = 60.0;
@@ -167,10 +169,12 @@ impl Scene {
 
     /// Why bodies on a joint move worse with the grid.
     fn hard_joint(&self) -> Option<String> {
+        let moving = self.moving_bodies();
         let turns = |joint: &&JointDescription| matches!(joint.kind, JointRule::Hinge | JointRule::Slider);
         for joint in self.joint.iter().filter(turns) {
-            let joined = |body: &&BodyDescription| body.name == joint.body || Some(&body.name) == joint.other.as_ref();
-            for body in self.body.iter().filter(joined).filter(|body| body.kind == BodyKind::Dynamic) {
+            let mut joined = ends(joint).map(|name| name.and_then(|name| moving.get(name)));
+            joined.sort_unstable();
+            for body in joined.into_iter().flatten().map(|&number| &self.body[number as usize]) {
                 if self.is_thin(body) {
                     return Some(format!("its cells are too wide for the body {:?} on a joint", body.name));
                 }
@@ -179,23 +183,27 @@ impl Scene {
                 }
             }
         }
-        let most = self.longest_chain();
+        let most = self.longest_chain(&moving);
         (most > MOST_JOINED).then(|| format!("it does not carry chains of {most} bodies on joints"))
     }
 
+    /// The numbers of the moving bodies by their names.
+    fn moving_bodies(&self) -> BTreeMap<&str, u32> {
+        let moving = (0..).zip(&self.body).filter(|(_, body)| body.kind == BodyKind::Dynamic);
+        moving.map(|(number, body)| (body.name.as_str(), number)).collect()
+    }
+
     /// Number of moving bodies that hang together by joints, at most.
-    fn longest_chain(&self) -> usize {
-        let (mut chains, mut lengths) = ((0..self.body.len()).collect::<Vec<usize>>(), vec![1; self.body.len()]);
-        let moving =
-            |name: &String| self.body.iter().position(|body| body.name == *name && body.kind == BodyKind::Dynamic);
+    fn longest_chain(&self, moving: &BTreeMap<&str, u32>) -> usize {
+        let mut chains = UnionFind::default();
+        chains.reset(self.body.len());
         for joint in &self.joint {
-            let Some((a, b)) = moving(&joint.body).zip(joint.other.as_ref().and_then(moving)) else { continue };
-            let (kept, other) = (chains[a], chains[b]);
-            if kept != other {
-                chains.iter_mut().filter(|chain| **chain == other).for_each(|chain| *chain = kept);
-                lengths[kept] += lengths[other];
+            if let [Some(a), Some(b)] = ends(joint).map(|name| name.and_then(|name| moving.get(name))) {
+                chains.unite(*a, *b);
             }
         }
+        let mut lengths = vec![0; self.body.len()];
+        (0..self.body.len() as u32).for_each(|body| lengths[chains.root(body) as usize] += 1);
         lengths.into_iter().max().unwrap_or(0)
     }
 
@@ -212,6 +220,11 @@ impl Scene {
         ];
         all.into_iter().filter(|(stands, ..)| *stands).map(|(_, what, instead)| (what, instead)).collect()
     }
+}
+
+/// The names of the bodies of a joint.
+fn ends(joint: &JointDescription) -> [Option<&str>; 2] {
+    [Some(joint.body.as_str()), joint.other.as_deref()]
 }
 
 /// Whether a shape has corners that point inwards, as a wheel with paddles has.

@@ -55,6 +55,14 @@ pub(crate) trait Wide:
         unsafe { Self::columns(rows) }
     }
 
+    /// Puts the rows of these columns at these numbers.
+    #[inline(always)]
+    fn scatter(columns: [Self; WIDE], all: &mut [[f64; WIDE]], numbers: &[u32; WIDE]) {
+        for (row, &number) in Self::rows(columns).into_iter().zip(numbers) {
+            all[number as usize] = row;
+        }
+    }
+
     /// A constant.
     fn like(self, value: f64) -> Self;
     /// The exactly rounded square root.

@@ -4,9 +4,9 @@
 use super::bounds::NONE;
 use super::linked::Linked;
 use super::manifold::Contact;
-use super::union_find::UnionFind;
 use crate::rigid::{Bodies, Twist};
 use crate::scene::SLEEP_SPEED;
+use crate::union_find::UnionFind;
 
 /// When bodies fall asleep.
 #[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]

@@ -1,12 +1,10 @@
 //! The rules of [`Contact`](super::Contact) for four contacts at once.
-#![allow(unsafe_code)]
 
 use super::Depenetration;
 use super::blocks::Blocks;
 use super::contact_block::{Block, Exact, Lane};
 use super::manifold::ROUNDS;
-use crate::simd::Level;
-use crate::simd::wide::{Array, WIDE, Wide};
+use crate::simd::wide::{Kernel, WIDE, Wide, run};
 use std::ops::Range;
 
 /// What a pass does with each block.
@@ -29,52 +27,35 @@ impl Blocks {
 
     /// Applies a rule to these blocks, one after the other.
     pub fn pass_over(&mut self, range: Range<usize>, rule: Rule) {
-        let (blocks, motion) = (&mut self.all[range], &mut self.motion[..]);
-        match Level::best() {
-            #[cfg(target_arch = "x86_64")]
-            // SAFETY: the level runs on this machine.
-            Level::Avx512 | Level::Avx2 => unsafe { pass_avx2(blocks, motion, rule) },
-            #[cfg(target_arch = "x86_64")]
-            // SAFETY: SSE2 is in the baseline.
-            Level::Sse2 => unsafe { pass::<crate::simd::wide::Sse2>(blocks, motion, rule) },
-            // SAFETY: arrays need nothing.
-            _ => unsafe { pass::<Array>(blocks, motion, rule) },
-        }
+        run(Pass { blocks: &mut self.all[range], motion: &mut self.motion, rule });
     }
 }
 
-/// # Safety
-/// The machine has AVX2.
-#[cfg(target_arch = "x86_64")]
-#[target_feature(enable = "avx2")]
-unsafe fn pass_avx2(blocks: &mut [Block], motion: &mut [Exact], rule: Rule) {
-    // SAFETY: passed on to the caller.
-    unsafe { pass::<crate::simd::wide::Avx2>(blocks, motion, rule) }
+/// A rule for blocks, one after the other.
+struct Pass<'a> {
+    blocks: &'a mut [Block],
+    motion: &'a mut [Exact],
+    rule: Rule,
 }
 
-// No closures below: a closure has not the instruction set of the function around it.
-
-/// # Safety
-/// The machine has the instruction set of the lanes.
-#[inline(always)]
-unsafe fn pass<W: Wide>(blocks: &mut [Block], motion: &mut [Exact], rule: Rule) {
-    match rule {
-        Rule::Solve => {
-            for block in blocks {
-                // SAFETY: passed on to the caller.
-                unsafe { solve::<W>(block, motion) }
+impl Kernel for Pass<'_> {
+    #[inline(always)]
+    fn run<W: Wide>(self, lanes: W) {
+        match self.rule {
+            Rule::Solve => {
+                for block in self.blocks {
+                    solve(lanes, block, self.motion);
+                }
             }
-        }
-        Rule::SolveBackward => {
-            for block in blocks.iter_mut().rev() {
-                // SAFETY: passed on to the caller.
-                unsafe { solve::<W>(block, motion) }
+            Rule::SolveBackward => {
+                for block in self.blocks.iter_mut().rev() {
+                    solve(lanes, block, self.motion);
+                }
             }
-        }
-        Rule::Separate(how, fall) => {
-            for block in blocks {
-                // SAFETY: passed on to the caller.
-                unsafe { separate::<W>(block, motion, &how, fall) }
+            Rule::Separate(how, fall) => {
+                for block in self.blocks {
+                    separate(lanes, block, self.motion, &how, fall);
+                }
             }
         }
     }
@@ -96,22 +77,19 @@ struct Lines<W> {
 }
 
 impl<W: Wide> Lines<W> {
-    /// # Safety
-    /// The machine has the instruction set of the lanes.
     #[inline(always)]
-    unsafe fn of(block: &Block) -> Self {
-        // SAFETY: passed on to the caller.
-        unsafe {
-            Lines {
-                normal: reals(&block.normal),
-                normal_a: reals(&block.normal_a),
-                normal_b: reals(&block.normal_b),
-                linear: exacts(&block.linear),
-                angular: exacts(&block.angular),
-                response: three(&block.response),
-                inverse: three(&block.inverse),
-                alone: reals(&block.alone),
-            }
+    fn of(lanes: W, block: &Block) -> Self {
+        let [first, second, off] = &block.response;
+        let [into_first, into_second, across] = &block.inverse;
+        Lines {
+            normal: reals(lanes, &block.normal),
+            normal_a: reals(lanes, &block.normal_a),
+            normal_b: reals(lanes, &block.normal_b),
+            linear: exacts(lanes, &block.linear),
+            angular: exacts(lanes, &block.angular),
+            response: [lanes.reals(first), lanes.reals(second), lanes.reals(off)],
+            inverse: [lanes.reals(into_first), lanes.reals(into_second), lanes.reals(across)],
+            alone: reals(lanes, &block.alone),
         }
     }
 
@@ -155,28 +133,14 @@ impl<W: Wide> Lines<W> {
     }
 }
 
-/// # Safety
-/// The machine has the instruction set of the lanes.
 #[inline(always)]
-unsafe fn reals<W: Wide>([first, second]: &[Lane; 2]) -> [W; 2] {
-    // SAFETY: passed on to the caller.
-    unsafe { [W::load_real(first), W::load_real(second)] }
+fn reals<W: Wide>(lanes: W, [first, second]: &[Lane; 2]) -> [W; 2] {
+    [lanes.reals(first), lanes.reals(second)]
 }
 
-/// # Safety
-/// The machine has the instruction set of the lanes.
 #[inline(always)]
-unsafe fn three<W: Wide>([first, second, third]: &[Lane; 3]) -> [W; 3] {
-    // SAFETY: passed on to the caller.
-    unsafe { [W::load_real(first), W::load_real(second), W::load_real(third)] }
-}
-
-/// # Safety
-/// The machine has the instruction set of the lanes.
-#[inline(always)]
-unsafe fn exacts<W: Wide>([first, second]: &[Exact; 2]) -> [W; 2] {
-    // SAFETY: passed on to the caller.
-    unsafe { [W::load(first), W::load(second)] }
+fn exacts<W: Wide>(lanes: W, [first, second]: &[Exact; 2]) -> [W; 2] {
+    [lanes.row(first), lanes.row(second)]
 }
 
 /// For each point, `yes` where `left` is not below `right`, else `no`.
@@ -185,23 +149,15 @@ fn where_least<W: Wide>(left: W, right: W, yes: [W; 2], no: [W; 2]) -> [W; 2] {
     [left.where_below(right, no[0], yes[0]), left.where_below(right, no[1], yes[1])]
 }
 
-/// # Safety
-/// The machine has the instruction set of the lanes.
 #[inline(always)]
-unsafe fn gather<W: Wide>(motion: &[Exact], bodies: &[u32; WIDE]) -> Motion<W> {
-    let [p, q, r, s] = *bodies;
-    let rows = [&motion[p as usize], &motion[q as usize], &motion[r as usize], &motion[s as usize]];
-    // SAFETY: passed on to the caller.
-    let [x, y, turn, _] = unsafe { W::columns(rows) };
+fn gather<W: Wide>(lanes: W, motion: &[Exact], bodies: &[u32; WIDE]) -> Motion<W> {
+    let [x, y, turn, _] = lanes.gather(motion, bodies);
     [x, y, turn]
 }
 
 #[inline(always)]
 fn scatter<W: Wide>(motion: &mut [Exact], bodies: &[u32; WIDE], [x, y, turn]: Motion<W>) {
-    let rows = W::rows([x, y, turn, x.like(0.0)]);
-    for (row, &body) in rows.into_iter().zip(bodies) {
-        motion[body as usize] = row;
-    }
+    W::scatter([x, y, turn, x.like(0.0)], motion, bodies);
 }
 
 /// The value cut to the range from minus to plus the limit.
@@ -211,47 +167,34 @@ fn within<W: Wide>(value: W, limit: W) -> W {
 }
 
 /// One iteration of a block.
-///
-/// # Safety
-/// The machine has the instruction set of the lanes.
 #[inline(always)]
-unsafe fn solve<W: Wide>(block: &mut Block, motion: &mut [Exact]) {
-    // SAFETY: passed on to the caller.
-    unsafe {
-        let (mut a, mut b) = (gather::<W>(motion, &block.bodies[0]), gather::<W>(motion, &block.bodies[1]));
-        let lines = Lines::<W>::of(block);
-        let old = exacts::<W>(&block.normal_impulse);
-        let zero = old[0].like(0.0);
-        once(block, &lines, (&mut a, &mut b), zero);
-        // Friction of a tall body turns it: a contact without impulses to start from needs a few rounds for both.
-        let idle = zero.where_below(old[0].larger(old[1]), zero, W::load_real(&block.turns));
-        let now = exacts::<W>(&block.normal_impulse);
-        let is_new = zero.where_below(now[0].larger(now[1]), idle, zero);
-        if is_new.to_array() != [0.0; WIDE] {
-            let others = zero.like(1.0) - is_new;
-            for _ in 1..ROUNDS {
-                once(block, &lines, (&mut a, &mut b), others);
-            }
+fn solve<W: Wide>(lanes: W, block: &mut Block, motion: &mut [Exact]) {
+    let (mut a, mut b) = (gather(lanes, motion, &block.bodies[0]), gather(lanes, motion, &block.bodies[1]));
+    let lines = Lines::of(lanes, block);
+    let old = exacts(lanes, &block.normal_impulse);
+    let zero = lanes.like(0.0);
+    once(block, &lines, (&mut a, &mut b), zero);
+    // Friction of a tall body turns it: a contact without impulses to start from needs a few rounds for both.
+    let idle = zero.where_below(old[0].larger(old[1]), zero, lanes.reals(&block.turns));
+    let now = exacts(lanes, &block.normal_impulse);
+    let is_new = zero.where_below(now[0].larger(now[1]), idle, zero);
+    if is_new.to_array() != [0.0; WIDE] {
+        let others = zero.like(1.0) - is_new;
+        for _ in 1..ROUNDS {
+            once(block, &lines, (&mut a, &mut b), others);
         }
-        scatter(motion, &block.bodies[0], a);
-        scatter(motion, &block.bodies[1], b);
     }
+    scatter(motion, &block.bodies[0], a);
+    scatter(motion, &block.bodies[1], b);
 }
 
 /// Solves the lanes where `done` is 0.
-///
-/// # Safety
-/// The machine has the instruction set of the lanes.
 #[inline(always)]
-unsafe fn once<W: Wide>(block: &mut Block, lines: &Lines<W>, (a, b): (&mut Motion<W>, &mut Motion<W>), done: W) {
-    // SAFETY: passed on to the caller.
-    let (gap, tangent_a, tangent_b, mass, friction, belt) = unsafe {
-        let (gap, mass): ([W; 2], [W; 2]) = (reals(&block.gap), reals(&block.tangent));
-        let (friction, belt) = (W::load_real(&block.friction), W::load_real(&block.belt));
-        (gap, reals::<W>(&block.tangent_a), reals::<W>(&block.tangent_b), mass, friction, belt)
-    };
-    // SAFETY: passed on to the caller.
-    let (old, old_tangent) = unsafe { (exacts::<W>(&block.normal_impulse), exacts::<W>(&block.tangent_impulse)) };
+fn once<W: Wide>(block: &mut Block, lines: &Lines<W>, (a, b): (&mut Motion<W>, &mut Motion<W>), done: W) {
+    let (gap, mass) = (reals(done, &block.gap), reals(done, &block.tangent));
+    let (tangent_a, tangent_b) = (reals(done, &block.tangent_a), reals(done, &block.tangent_b));
+    let (friction, belt) = (done.reals(&block.friction), done.reals(&block.belt));
+    let (old, old_tangent) = (exacts(done, &block.normal_impulse), exacts(done, &block.tangent_impulse));
     let zero = done.like(0.0);
     let openings = lines.openings(a, b);
     let pressed = lines.press([openings[0] + gap[0].larger(zero), openings[1] + gap[1].larger(zero)], old);
@@ -283,10 +226,8 @@ unsafe fn once<W: Wide>(block: &mut Block, lines: &Lines<W>, (a, b): (&mut Motio
         turns[1] + (tangent_b[0] * slid[0] + tangent_b[1] * slid[1]),
     ];
     if block.rolls {
-        // SAFETY: passed on to the caller.
-        let (arm, mass, old) = unsafe {
-            (W::load_real(&block.rolling_arm), W::load(&block.rolling_mass), W::load(&block.rolling_impulse))
-        };
+        let (arm, mass) = (done.reals(&block.rolling_arm), done.row(&block.rolling_mass));
+        let old = done.row(&block.rolling_impulse);
         let (limit, turn) = (arm * total, a[2] - b[2] + turns[0] * lines.angular[0] + turns[1] * lines.angular[1]);
         let moment = zero.where_below(done, old, within(old - turn * mass, limit));
         turns = [turns[0] + (moment - old), turns[1] + (moment - old)];
@@ -298,35 +239,27 @@ unsafe fn once<W: Wide>(block: &mut Block, lines: &Lines<W>, (a, b): (&mut Motio
 }
 
 /// Moves the bodies of a block out of each other.
-///
-/// # Safety
-/// The machine has the instruction set of the lanes.
 #[inline(always)]
-unsafe fn separate<W: Wide>(block: &Block, motion: &mut [Exact], how: &Depenetration, fall: f64) {
-    // SAFETY: passed on to the caller.
-    unsafe {
-        let (mut a, mut b) = (gather::<W>(motion, &block.bodies[0]), gather::<W>(motion, &block.bodies[1]));
-        let (lines, size, gap) = (Lines::<W>::of(block), W::load_real(&block.size), reals::<W>(&block.gap));
-        let zero = size.like(0.0);
-        let openings = lines.openings(&a, &b);
-        let removed = [
-            how.removed(zero - gap[0] - openings[0], size, fall),
-            how.removed(zero - gap[1] - openings[1], size, fall),
-        ];
-        if removed[0].larger(removed[1]).to_array() == [0.0; WIDE] {
-            return;
-        }
-        let lacking = [zero - removed[0], zero - removed[1]];
-        let normal = lines.press(lacking, [zero; 2]);
-        let total = normal[0] + normal[1];
-        let turns = [
-            lines.normal_a[0] * normal[0] + lines.normal_a[1] * normal[1],
-            lines.normal_b[0] * normal[0] + lines.normal_b[1] * normal[1],
-        ];
-        lines.shift((&mut a, &mut b), [lines.normal[0] * total, lines.normal[1] * total], turns);
-        scatter(motion, &block.bodies[0], a);
-        scatter(motion, &block.bodies[1], b);
+fn separate<W: Wide>(lanes: W, block: &Block, motion: &mut [Exact], how: &Depenetration, fall: f64) {
+    let (mut a, mut b) = (gather(lanes, motion, &block.bodies[0]), gather(lanes, motion, &block.bodies[1]));
+    let (lines, size, gap) = (Lines::of(lanes, block), lanes.reals(&block.size), reals(lanes, &block.gap));
+    let zero = lanes.like(0.0);
+    let openings = lines.openings(&a, &b);
+    let removed =
+        [how.removed(zero - gap[0] - openings[0], size, fall), how.removed(zero - gap[1] - openings[1], size, fall)];
+    if removed[0].larger(removed[1]).to_array() == [0.0; WIDE] {
+        return;
     }
+    let lacking = [zero - removed[0], zero - removed[1]];
+    let normal = lines.press(lacking, [zero; 2]);
+    let total = normal[0] + normal[1];
+    let turns = [
+        lines.normal_a[0] * normal[0] + lines.normal_a[1] * normal[1],
+        lines.normal_b[0] * normal[0] + lines.normal_b[1] * normal[1],
+    ];
+    lines.shift((&mut a, &mut b), [lines.normal[0] * total, lines.normal[1] * total], turns);
+    scatter(motion, &block.bodies[0], a);
+    scatter(motion, &block.bodies[1], b);
 }
 
 impl Depenetration {

@@ -51,7 +51,6 @@ mod step_context;
 mod substep;
 mod sweep;
 mod touch;
-mod union_find;
 mod waking;
 mod watch;
 
@@ -65,7 +64,6 @@ pub(crate) use manifold::{Contact, entry};
 pub(crate) use push::Push;
 pub(crate) use solver::{ContactSolver, Split};
 pub(crate) use sweep::Sweep;
-pub(crate) use union_find::UnionFind;
 
 use crate::math::Vector64;
 use crate::parallel::Parallelism;

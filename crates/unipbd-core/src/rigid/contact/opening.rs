@@ -254,7 +254,5 @@ fn shift<W: Wide>(lanes: W, block: &Block, side: usize, motion: &mut [Exact], pu
     let [x, y, turn, _] = lanes.gather(motion, &block.bodies[side]);
     let (linear, angular) = (lanes.row(&block.linear[side]), lanes.row(&block.angular[side]));
     let moved = [x + push[0] * linear, y + push[1] * linear, turn + push[2] * angular, lanes.like(0.0)];
-    for (row, &body) in W::rows(moved).into_iter().zip(&block.bodies[side]) {
-        motion[body as usize] = row;
-    }
+    W::scatter(moved, motion, &block.bodies[side]);
 }
