@@ -11,7 +11,7 @@ use crate::step::{Clock, Push};
 
 const MAGIC: &[u8; 8] = b"unipbd\0S";
 /// Version of the format; increased with every change of the contents.
-const VERSION: u32 = 10;
+const VERSION: u32 = 11;
 const CHECKSUM_BYTES: usize = 8;
 
 impl State {

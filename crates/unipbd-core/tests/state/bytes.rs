@@ -29,11 +29,11 @@ fn foreign_bytes_and_other_versions_are_named_as_such() {
         let mut bytes = BYTES.clone();
         bytes[8] = other;
         let refused = State::from_bytes(&bytes).unwrap_err();
-        assert_eq!(refused, StateError::Version { found: u32::from(other), expected: 10 });
+        assert_eq!(refused, StateError::Version { found: u32::from(other), expected: 11 });
         assert!(
             refused
                 .to_string()
-                .contains(&format!("has format version {other}, this version of unipbd reads version 10"))
+                .contains(&format!("has format version {other}, this version of unipbd reads version 11"))
         );
     }
 }

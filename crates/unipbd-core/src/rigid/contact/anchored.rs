@@ -1,5 +1,6 @@
 //! What the lanes of a block keep from one search to the next: the geometry of their contacts, fixed in the bodies.
 
+use super::bounds::NONE;
 use super::contact_block::{Block, Exact, Lane};
 use super::contact_cache::ContactCache;
 use super::manifold::Contact;
@@ -33,24 +34,30 @@ pub(super) struct Anchored {
 }
 
 impl Anchored {
-    /// Forgets all contacts; lanes that are taken again need no zeros.
-    pub fn clear(&mut self, with_free_lanes: bool) {
-        if with_free_lanes {
-            *self = Anchored::default();
-        }
-        (self.lines, self.slides) = (false, false);
+    /// Notes what holds for any of the lanes with a contact.
+    pub fn sum_up(&mut self, holders: &[u32; WIDE]) {
+        let by_points = |lane: usize| self.of_first[lane] == 0.0 && self.of_second[lane] == 0.0;
+        self.lines = (0..WIDE).any(|lane| holders[lane] != NONE && by_points(lane));
+        self.slides = self.static_friction != self.kinetic_friction;
     }
 
-    /// Takes the geometry of a contact into a lane.
+    /// Takes the places of a contact into a lane.
     #[inline(always)]
-    pub fn take(&mut self, lane: usize, contact: &Contact, cache: &ContactCache) {
-        let (lane, surface) = (lane % WIDE, &cache.surface);
+    pub fn place(&mut self, lane: usize, cache: &ContactCache) {
+        let lane = lane % WIDE;
         (self.normal[0][lane], self.normal[1][lane]) = (cache.normal.x, cache.normal.y);
         for (k, (on_a, on_b)) in cache.anchors.into_iter().enumerate() {
             (self.on_a[k][0][lane], self.on_a[k][1][lane]) = (on_a.x, on_a.y);
             (self.on_b[k][0][lane], self.on_b[k][1][lane]) = (on_b.x, on_b.y);
-            self.radii[k][lane] = cache.radii[k];
         }
+    }
+
+    /// Takes the geometry of a contact into a lane; zeros for one that is over.
+    #[inline(always)]
+    pub fn take(&mut self, lane: usize, contact: &Contact, cache: &ContactCache) {
+        let (lane, surface) = (lane % WIDE, &cache.surface);
+        self.place(lane, cache);
+        (self.radii[0][lane], self.radii[1][lane]) = (cache.radii[0], cache.radii[1]);
         let flag = |is: bool| if is { 1.0 } else { 0.0 };
         self.of_first[lane] = flag(cache.reference == Reference::First);
         self.of_second[lane] = flag(cache.reference == Reference::Second);
@@ -58,8 +65,6 @@ impl Anchored {
         self.static_friction[lane] = surface.static_friction as Real;
         self.kinetic_friction[lane] = surface.kinetic_friction as Real;
         self.speed[lane] = surface.speed as Real;
-        self.lines |= cache.reference == Reference::Points;
-        self.slides |= surface.static_friction != surface.kinetic_friction;
     }
 }
 
@@ -75,8 +80,9 @@ impl Block {
         }
         // Kept where two discs lie at one place: no line between them has a direction.
         (self.normal[0][lane], self.normal[1][lane]) = (contact.normal.x as Real, contact.normal.y as Real);
-        let of_a = sizes[contact.a as usize];
-        self.size[lane] = sizes.get(contact.b as usize).map_or(of_a, |of_b| of_b.min(of_a)) as Real;
+        let size = |body: u32| sizes.get(body as usize).copied();
+        let of_a = size(contact.a).unwrap_or(0.0);
+        self.size[lane] = size(contact.b).map_or(of_a, |of_b| of_b.min(of_a)) as Real;
         self.rolling_arm[lane] = contact.rolling_arm as Real;
         self.rolling_impulse[lane] = contact.rolling_impulse;
         self.rolling_mass[lane] = super::complementarity::inverse(self.angular[0][lane] + self.angular[1][lane]);

@@ -1,7 +1,9 @@
 //! Contacts in blocks of four that share no body, for the lanes of a sweep.
 //!
 //! Contacts that share a body keep their order from block to block, so that a sweep over the blocks moves the bodies as
-//! a sweep over the contacts one after the other would: it is the same for every number of lanes and threads.
+//! a sweep over the contacts one after the other would: it is the same for every number of lanes and threads. In a large
+//! heap contacts stay in their lanes from search to search, and those that come lie behind all others: see
+//! [`in_place`](super::in_place).
 
 use super::anchored::{Anchored, any};
 use super::bounds::NONE;
@@ -21,22 +23,40 @@ pub(super) const CHUNK: usize = 64;
 const PARALLEL_FROM: usize = 512;
 
 /// All contacts of a substep in blocks.
-#[derive(Clone, Default)]
+#[derive(Clone, Default, serde::Serialize, serde::Deserialize)]
 pub(super) struct Blocks {
+    /// Block and lane of each contact, as WIDE x block + lane; [`NONE`] for one that is over.
+    pub slots: Vec<u32>,
+    /// Bodies at the last ordering, its number of blocks, and the contacts that have come or gone since.
+    pub bodies: u32,
+    pub ordered: u32,
+    pub changes: u32,
+    #[serde(skip)]
     pub all: Vec<Block>,
-    anchored: Vec<Anchored>,
+    #[serde(skip)]
+    pub anchored: Vec<Anchored>,
     /// Whether the impulses of the lanes are newer than those of the contacts.
+    #[serde(skip)]
     pub live: bool,
-    /// Block and lane of each contact, as WIDE x block + lane.
-    slots: Vec<u32>,
     /// The contact in each lane, or [`NONE`].
-    holders: Vec<[u32; WIDE]>,
+    #[serde(skip)]
+    pub holders: Vec<[u32; WIDE]>,
     /// Motion of the bodies: along x and y, rotation, and nothing. The last row is idle.
+    #[serde(skip)]
     pub motion: Vec<Exact>,
+    #[serde(skip)]
     velocities: Vec<Exact>,
     /// Impulses over the frame on bodies, the idle row, and walls [N s], [N m s].
+    #[serde(skip)]
     pub loads: Vec<Exact>,
-    /// The block after the last one of each body, in the assignment.
+    #[serde(skip)]
+    order: Order,
+}
+
+/// Buffers of an ordering.
+#[derive(Clone, Default)]
+struct Order {
+    /// The block after the last one of each body.
     next: Vec<u32>,
     /// Contacts in each block, and a block at or behind it with room.
     filled: Vec<u8>,
@@ -46,40 +66,49 @@ pub(super) struct Blocks {
 impl Blocks {
     /// Gives each contact the first block behind those of the contacts before it that share one of its bodies.
     pub fn assign(&mut self, contacts: &[Contact], bodies: &Bodies) {
-        self.next.clear();
-        self.next.resize(bodies.len(), 0);
-        self.filled.clear();
-        self.room.clear();
+        let order = &mut self.order;
+        order.next.clear();
+        order.next.resize(bodies.len(), 0);
+        order.filled.clear();
+        order.room.clear();
         self.slots.clear();
         self.holders.clear();
         for (contact, number) in contacts.iter().zip(0u32..) {
             // What contacts do not move may be in all lanes at once.
             let moved = |body: &u32| *body != NONE && bodies.is_dynamic(*body as usize);
             let sides = [contact.a, contact.b];
-            let first = sides.iter().filter(|body| moved(body)).map(|&body| self.next[body as usize]).max();
-            let block = self.find_room(first.unwrap_or(0));
-            let lane = self.filled[block as usize];
+            let first = sides.iter().filter(|body| moved(body)).map(|&body| order.next[body as usize]).max();
+            let block = order.find_room(first.unwrap_or(0));
+            let lane = order.filled[block as usize];
             self.slots.push(WIDE as u32 * block + u32::from(lane));
+            self.holders.resize(order.room.len(), [NONE; WIDE]);
             self.holders[block as usize][usize::from(lane)] = number;
-            self.filled[block as usize] += 1;
+            order.filled[block as usize] += 1;
             if usize::from(lane) + 1 == WIDE {
-                self.room[block as usize] = block + 1;
+                order.room[block as usize] = block + 1;
             }
             for body in sides.into_iter().filter(moved) {
-                self.next[body as usize] = block + 1;
+                order.next[body as usize] = block + 1;
             }
         }
+        (self.bodies, self.ordered, self.changes) = (bodies.len() as u32, self.holders.len() as u32, 0);
+        self.lay_out(bodies.len());
+    }
+
+    /// Makes the blocks of the lanes that are held.
+    pub fn lay_out(&mut self, bodies: usize) {
         // The lanes with a contact are filled in each substep.
-        let idle = Block { bodies: [[bodies.len() as u32; WIDE]; 2], ..Block::default() };
-        self.all.resize(self.filled.len(), Block::default());
-        for (block, _) in self.all.iter_mut().zip(&self.filled).filter(|(_, filled)| usize::from(**filled) < WIDE) {
+        let idle = Block::idle(bodies);
+        self.all.resize(self.holders.len(), Block::default());
+        for (block, _) in self.all.iter_mut().zip(&self.holders).filter(|(_, holders)| holders.contains(&NONE)) {
             block.clone_from(&idle);
         }
+        self.anchored.resize(self.all.len(), Anchored::default());
     }
 
     /// Whether these are the blocks of so many contacts and bodies.
     pub fn fits(&self, contacts: usize, bodies: usize) -> bool {
-        self.slots.len() == contacts && self.next.len() == bodies
+        self.slots.len() == contacts && self.bodies as usize == bodies && !self.is_to_be_laid_out()
     }
 
     /// The block of a contact.
@@ -88,47 +117,20 @@ impl Blocks {
         self.slots[contact] as usize / WIDE
     }
 
-    fn find_room(&mut self, from: u32) -> u32 {
-        let mut block = from;
-        loop {
-            if block as usize >= self.room.len() {
-                self.room.push(block);
-                self.filled.push(0);
-                self.holders.push([NONE; WIDE]);
-            }
-            let behind = self.room[block as usize];
-            if behind == block {
-                break;
-            }
-            block = behind;
-        }
-        // The next search takes the short way.
-        let mut passed = from;
-        while passed != block {
-            passed = std::mem::replace(&mut self.room[passed as usize], block);
-        }
-        block
-    }
-
     /// Takes the contacts of a search into the lanes, block by block.
     pub fn take(&mut self, contacts: &[Contact], caches: &[ContactCache], masses: &[InverseMass], sizes: &[f64]) {
-        let idle = masses.len() as u32;
-        self.anchored.resize(self.all.len(), Anchored::default());
         for ((block, anchored), holders) in self.all.iter_mut().zip(&mut self.anchored).zip(&self.holders) {
-            anchored.clear(holders.contains(&NONE));
+            if holders.contains(&NONE) {
+                *anchored = Anchored::default();
+            }
             for (lane, &holder) in holders.iter().enumerate().filter(|(_, holder)| **holder != NONE) {
                 let (contact, cache) = (&contacts[holder as usize], &caches[holder as usize]);
                 block.take(lane, contact, masses, sizes);
+                block.load_on(lane, contact, cache, masses.len());
                 anchored.take(lane, contact, cache);
-                block.loaded[lane] = if contact.b != NONE {
-                    contact.b
-                } else if cache.wall != NONE {
-                    idle + 1 + cache.wall
-                } else {
-                    idle
-                };
             }
             block.rolls = any(&block.rolling_arm);
+            anchored.sum_up(holders);
         }
     }
 
@@ -181,7 +183,7 @@ impl Blocks {
         if !std::mem::take(&mut self.live) {
             return;
         }
-        for (contact, &slot) in contacts.iter_mut().zip(&self.slots) {
+        for (contact, &slot) in contacts.iter_mut().zip(&self.slots).filter(|(_, slot)| **slot != NONE) {
             let (block, lane) = (&self.all[slot as usize / WIDE], slot as usize % WIDE);
             block.give_impulses(lane, contact);
             if with_geometry {
@@ -201,6 +203,30 @@ impl Blocks {
         for (of, &[x, y, angular, _]) in motion.iter_mut().zip(&self.motion) {
             (of.linear.x, of.linear.y, of.angular) = (x, y, angular);
         }
+    }
+}
+
+impl Order {
+    /// The first block with room, at or behind this one.
+    fn find_room(&mut self, from: u32) -> u32 {
+        let mut block = from;
+        loop {
+            if block as usize >= self.room.len() {
+                self.room.push(block);
+                self.filled.push(0);
+            }
+            let behind = self.room[block as usize];
+            if behind == block {
+                break;
+            }
+            block = behind;
+        }
+        // The next search takes the short way.
+        let mut passed = from;
+        while passed != block {
+            passed = std::mem::replace(&mut self.room[passed as usize], block);
+        }
+        block
     }
 }
 

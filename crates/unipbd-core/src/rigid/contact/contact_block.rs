@@ -1,5 +1,8 @@
 //! Four contacts that share no body, for the lanes of a sweep.
 
+use super::bounds::NONE;
+use super::contact_cache::ContactCache;
+use super::manifold::Contact;
 use crate::math::Real;
 use crate::simd::wide::WIDE;
 
@@ -49,4 +52,21 @@ pub(super) struct Block {
     pub normal_impulse: [Exact; 2],
     pub tangent_impulse: [Exact; 2],
     pub rolling_impulse: Exact,
+}
+
+impl Block {
+    /// A block without contacts, among so many bodies.
+    pub fn idle(bodies: usize) -> Block {
+        Block { bodies: [[bodies as u32; WIDE]; 2], ..Block::default() }
+    }
+
+    /// Where the impulses of a contact are summed besides its first body: rows of walls lie behind the idle one.
+    pub fn load_on(&mut self, lane: usize, contact: &Contact, cache: &ContactCache, bodies: usize) {
+        let idle = bodies as u32;
+        self.loaded[lane] = match (contact.b, cache.wall) {
+            (NONE, NONE) => idle,
+            (NONE, wall) => idle + 1 + wall,
+            (body, _) => body,
+        };
+    }
 }

@@ -1,5 +1,6 @@
 //! A contact point, and the rarely read data of a contact.
 
+use super::bounds::NONE;
 use super::frames::Frame;
 use super::touch::{Reference, Touch};
 use crate::math::Vector64;
@@ -42,7 +43,6 @@ impl Point {
 /// Rarely read data of a contact.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
 pub(crate) struct ContactCache {
-    pub pair: u32,
     /// The wall, or `NONE`.
     pub wall: u32,
     pub surface: Surface,
@@ -89,17 +89,12 @@ impl ContactCache {
             && self.rebound.iter().all(of_rebound)
     }
 
-    pub(super) fn new((pair, wall): (u32, u32), surface: Surface, touch: &Touch, frames: [Frame; 2]) -> ContactCache {
-        let of = match touch.reference {
-            Reference::First => frames[0],
-            Reference::Second | Reference::Points => frames[1],
-        };
+    pub(super) fn new(wall: u32, surface: Surface, touch: &Touch, frames: [Frame; 2]) -> ContactCache {
         ContactCache {
-            pair,
             wall,
             surface,
             reference: touch.reference,
-            normal: of.turn_back(touch.normal),
+            normal: touch.fixed_normal(frames),
             radii: touch.radii,
             anchors: Default::default(),
             features: [0; 2],
@@ -107,6 +102,20 @@ impl ContactCache {
             pull: 0.0,
             rebound: [Rebound::default(); 2],
         }
+    }
+
+    /// Beside a contact that is over.
+    pub(super) fn over() -> ContactCache {
+        let surface = Surface { no_slip: false, ..Surface::with_friction(0.0) };
+        let touch = Touch {
+            reference: Reference::Points,
+            normal: Vector64::ZERO,
+            on_a: Vector64::ZERO,
+            on_b: Vector64::ZERO,
+            radii: [0.0; 2],
+            feature: 0,
+        };
+        ContactCache::new(NONE, surface, &touch, [Frame::WORLD; 2])
     }
 
     /// Whether a point rebounded in the last substep.

@@ -13,10 +13,13 @@ pub(super) struct Frame {
     pub rotation: Vector64,
 }
 
-/// The coordinates of the world, for walls.
+/// The row of the world.
 const WORLD: Exact = [0.0, 0.0, 1.0, 0.0];
 
 impl Frame {
+    /// The coordinates of the world, for walls.
+    pub const WORLD: Frame = Frame { position: Vector64::ZERO, rotation: Vector64::X };
+
     /// A direction of the world in the coordinates of the body.
     pub fn turn_back(&self, direction: Vector64) -> Vector64 {
         Vector64::new(self.rotation.dot(direction), self.rotation.perp_dot(direction))

@@ -6,6 +6,7 @@
 //! once or seldom in [`ContactCache`]: sweeps over large heaps are bound by memory.
 
 use super::Depenetration;
+use super::bounds::NONE;
 use super::complementarity::{self, Coupling, inverse};
 use super::contact_cache::{ContactCache, Point, Rebound};
 use super::frames::Frame;
@@ -79,10 +80,15 @@ impl Contact {
         Contact { a, b, count: 0, normal, points, effective_mass, rolling_arm, rolling_impulse: 0.0 }
     }
 
-    /// Whether the contact of a saved state can be one of these two bodies.
-    pub fn is_sound(&self, bodies: (u32, u32)) -> bool {
-        let finite = self.normal.is_finite() && self.rolling_impulse.is_finite();
-        (self.a, self.b) == bodies && self.count <= 2 && finite && self.points.iter().all(Point::is_finite)
+    /// In the row of a contact that is over: it has no points.
+    pub fn over() -> Contact {
+        Contact::new((NONE, NONE), Vector64::ZERO, 0.0)
+    }
+
+    /// Whether the numbers of a saved state can be those of a contact.
+    pub fn is_sound(&self) -> bool {
+        let finite = self.normal.is_finite() && self.rolling_impulse.is_finite() && self.rolling_arm.is_finite();
+        self.count <= 2 && finite && self.points.iter().all(Point::is_finite)
     }
 
     /// Whether a point with this normal can be added.
@@ -99,7 +105,7 @@ impl Contact {
     pub(super) fn add(&mut self, touch: &Touch, cache: &mut ContactCache, frames: [Frame; 2]) {
         let k = self.count as usize;
         self.points[k] = Point { gap: touch.gap(), ..Point::default() };
-        cache.anchors[k] = (frames[0].local(touch.on_a), frames[1].local(touch.on_b));
+        cache.anchors[k] = touch.anchors(frames);
         cache.features[k] = touch.feature;
         self.count += 1;
     }

@@ -27,6 +27,7 @@ mod contact_set;
 mod exposure;
 mod finish;
 mod frames;
+mod in_place;
 mod islands;
 mod jacobi;
 mod joint;
@@ -98,7 +99,6 @@ pub struct Contacts {
     watch: Watch,
     islands: Islands,
     jacobi: Jacobi,
-    #[serde(skip)]
     blocks: Blocks,
     split: Vec<InverseMass>,
     /// Inverse masses for contacts; empty if they equal those of the bodies.

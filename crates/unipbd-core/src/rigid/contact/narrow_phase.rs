@@ -3,14 +3,15 @@
 //! Contacts are searched once per frame, and within a frame again where a body leaves its prediction. In each substep
 //! their gaps and arms are measured at the poses of the bodies.
 
+use super::blocks::Blocks;
 use super::bounds::NONE;
 use super::contact_block::Exact;
 use super::contact_cache::ContactCache;
-use super::contact_set::{ContactSet, Rows};
+use super::contact_set::{ContactSet, Found, Rows};
 use super::frames::Frames;
 use super::manifold::Contact;
 use super::pair_contacts::PairContacts;
-use super::pairs::{Meeting, Pairs, Span};
+use super::pairs::{Pairs, Span, Touching};
 use super::pieces::Pieces;
 use super::reach::Reach;
 use super::step_context::StepContext;
@@ -19,6 +20,7 @@ use crate::parallel::Parallelism;
 use crate::rigid::{Bodies, Wall};
 use crate::scene::FrictionRule;
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// Pairs per task, and the minimum number of pairs for parallel tasks.
 const CHUNK: usize = 512;
@@ -31,17 +33,17 @@ pub(super) struct NarrowPhase {
     /// Those of the walls alone.
     #[serde(skip)]
     walls: Pieces,
-    pairs: Pairs,
+    pub pairs: Pairs,
     reach: Reach,
     #[serde(skip)]
     frames: Frames,
-    found: ContactSet,
+    pub found: ContactSet,
     /// Whether a contact can rebound.
     #[serde(skip)]
     elastic: bool,
     /// Buffer of the search.
     #[serde(skip)]
-    coming: ContactSet,
+    pub coming: ContactSet,
     /// Contacts between sleeping bodies, kept until they wake: they store forces in place of impulses.
     frozen: ContactSet,
     /// Contacts found by each task of the narrow phase.
@@ -75,20 +77,28 @@ impl NarrowPhase {
         // Bodies may have come and gone since.
         let pieces = self.walls.at_saved(&saved.pieces, bodies)?;
         let mut pairs = self.pairs.at_saved(saved.pairs, &pieces, bodies)?;
-        let sound = [&saved.found, &saved.frozen].into_iter().all(|set| set.is_sound(&pairs.all, &pieces));
-        if !sound {
+        let walls = pieces.walls();
+        if ![&saved.found, &saved.frozen].into_iter().all(|set| set.is_sound(bodies.len(), walls)) {
             return None;
         }
         let mut active = pairs.active.iter().map(|active| active.index).peekable();
+        let mut claimed = vec![false; saved.found.contacts.len()];
         for (span, index) in pairs.spans.iter_mut().zip(0u32..) {
             let is_active = active.next_if_eq(&index).is_some();
             let set = if span.frozen { &saved.frozen } else { &saved.found };
-            let whole = span.fits(set.caches.len()) && set.caches[span.range()].iter().all(|known| known.pair == index);
+            let whole = set.is_of(span, &pairs.all[index as usize], &pieces);
             if !whole && (is_active || span.frozen) {
                 return None;
             }
             if !whole {
                 *span = Span::default();
+            }
+            // Each contact belongs to one pair.
+            if is_active
+                && !span.frozen
+                && claimed[span.range()].iter_mut().any(|claimed| std::mem::replace(claimed, true))
+            {
+                return None;
             }
         }
         let (found, frozen, parallelism) = (saved.found, saved.frozen, self.parallelism);
@@ -120,9 +130,9 @@ impl NarrowPhase {
             };
             let start = to.contacts.len() as u32;
             to.contacts.extend_from_slice(&from.contacts[span.range()]);
-            let surface = Meeting::of(&self.pieces, &self.pairs.all[index as usize]).surface;
+            let surface = Touching::of(&self.pieces, &self.pairs.all[index as usize]).surface;
             let caches = from.caches[span.range()].iter();
-            to.caches.extend(caches.map(|cache| ContactCache { pair: index, surface, ..*cache }));
+            to.caches.extend(caches.map(|cache| ContactCache { surface, ..*cache }));
             span.first = start;
         }
         debug_assert!(kept == self.pairs.all.len());
@@ -148,11 +158,15 @@ impl NarrowPhase {
         self.pairs.note_woken(bodies, &mut self.reach) | marked
     }
 
-    /// Searches the contacts of the bodies that need it, with the impulses of the last substep.
-    pub fn search(&mut self, bodies: &Bodies, moment: &StepContext) {
+    /// Finds the pairs that may touch until the end of the frame; whether bodies have begun or ceased to move.
+    pub fn find_pairs(&mut self, bodies: &Bodies, moment: &StepContext) -> bool {
         self.pieces.update(bodies, &self.frames);
-        self.pairs.update(&self.pieces, bodies, &mut self.reach, moment.gravity.length());
-        self.collide(moment.last_dt);
+        self.pairs.update(&self.pieces, bodies, &mut self.reach, moment.gravity.length())
+    }
+
+    /// Searches the contacts of the bodies that need it, with the impulses of the last substep, and orders all by pair.
+    pub fn search(&mut self, moment: &StepContext) {
+        self.collide(0..self.pairs.active.len(), moment.last_dt, None);
         self.adopt();
     }
 
@@ -204,8 +218,8 @@ impl NarrowPhase {
         std::mem::swap(&mut self.found, &mut self.coming);
         self.elastic = self.found.elastic;
         let mut first = 0;
-        for (active, &(count, searched)) in self.pairs.active.iter().zip(&self.found.spans) {
-            self.pairs.spans[active.index as usize] = Span { first, count, frozen: false, searched };
+        for &Found { pair, count, searched } in &self.found.found {
+            self.pairs.spans[pair as usize] = Span { first, count, frozen: false, searched };
             first += count;
         }
     }
@@ -236,15 +250,22 @@ impl NarrowPhase {
         self.frozen = frozen;
     }
 
-    /// The narrow phase over all active pairs; contacts come in the order of the pairs, with the impulses of a substep of
-    /// length `dt`.
-    fn collide(&mut self, dt: f64) {
+    /// Whether the search is worth several threads.
+    pub fn is_parallel(&self) -> bool {
+        self.pairs.active.len() >= PARALLEL_FROM && self.parallelism != Parallelism::Serial
+    }
+
+    /// The narrow phase over these active pairs; contacts come in the order of the pairs, with the impulses of a substep of
+    /// length `dt`, but for those that stay.
+    pub fn collide(&mut self, range: Range<usize>, dt: f64, staying: Option<&Blocks>) {
+        let is_parallel = self.is_parallel();
         let (mut coming, mut tasks) = (std::mem::take(&mut self.coming), std::mem::take(&mut self.tasks));
         coming.clear();
         let (pieces, pairs, last, frozen) = (&self.pieces, &self.pairs, &self.found, &self.frozen);
-        let search = PairContacts { pieces, pairs, reach: &self.reach, frames: &self.frames, dt, last, frozen };
-        let active = &pairs.active;
-        if active.len() < PARALLEL_FROM || self.parallelism == Parallelism::Serial {
+        let (reach, frames) = (&self.reach, &self.frames);
+        let search = PairContacts { pieces, pairs, reach, frames, dt, last, frozen, staying };
+        let active = &pairs.active[range];
+        if !is_parallel {
             active.iter().for_each(|pair| search.pair(pair, &mut coming));
         } else {
             tasks.resize_with(tasks.len().max(active.len().div_ceil(CHUNK)), ContactSet::default);

@@ -1,15 +1,16 @@
 //! Contacts of one pair: those of the last search while they hold, else searched by the narrow phase.
 
+use super::blocks::Blocks;
 use super::bounds::NONE;
 use super::collide;
 use super::contact_cache::{ContactCache, Rebound};
-use super::contact_set::ContactSet;
+use super::contact_set::{ContactSet, Found, Moved};
 use super::frames::Frames;
 use super::manifold::Contact;
-use super::pairs::{Active, Kind, Meeting, Pairs, Searched, Span};
+use super::pairs::{Active, Kind, Meeting, Pairs, Searched, Span, Touching};
 use super::pieces::Pieces;
 use super::reach::Reach;
-use super::touch::Touch;
+use super::touch::{Points, Touch};
 use crate::math::Vector64;
 
 /// Way of two bodies against each other after which their contacts are searched again, relative to the gap below which
@@ -30,35 +31,68 @@ pub(super) struct PairContacts<'a> {
     pub last: &'a ContactSet,
     /// Contacts of sleeping bodies.
     pub frozen: &'a ContactSet,
+    /// Where the contacts of the last search stay, with their impulses; `None` if all are put into a new order.
+    pub staying: Option<&'a Blocks>,
 }
 
 impl PairContacts<'_> {
-    /// Appends the contacts of a pair.
+    /// Appends the contacts of a pair, unless they stay.
     pub fn pair(&self, active: &Active, out: &mut ContactSet) {
         let (index, span) = (active.index, self.pairs.spans[active.index as usize]);
+        let keep = |out: &mut ContactSet| {
+            if self.staying.is_none() {
+                self.keep_all(index, span, out);
+            }
+        };
+        if !span.frozen && !self.is_wanted(active.bodies) {
+            return keep(out);
+        }
         let (need, lie) = (self.reach.margin(active.bodies), self.lie(active.bodies));
-        if !span.frozen && (self.holds(&span.searched, active.bodies, need, lie) || !self.is_wanted(active.bodies)) {
-            return self.keep_all(index, span, out);
+        if !span.frozen && self.holds(&span.searched, active.bodies, need, lie) {
+            return keep(out);
         }
         let (pair, start) = (Meeting::of(self.pieces, &self.pairs.all[index as usize]), out.contacts.len());
         let margin = need + pair.near;
         let mut touches = std::mem::take(&mut out.touches);
         touches.clear();
         let room = self.touch(&pair, margin, &mut touches);
-        for touch in &touches {
-            self.add((index, active.bodies), &pair, touch, start, out);
-        }
         let hold = match pair.kind {
             _ if touches.is_empty() => f64::INFINITY,
             Kind::Discs => HOLD_OF_DISCS * pair.near,
             _ => HOLD * pair.near,
         };
+        let searched = Searched { place: lie.0, turn: lie.1, room, hold, points: Points::of(&touches) };
+        if self.staying.is_some() && searched.points.stay(&span.searched.points) {
+            self.move_contact((index, active.bodies), &touches, searched, out);
+            out.touches = touches;
+            return;
+        }
+        let near = 5.0 * pair.near;
+        let pair = (!touches.is_empty()).then(|| Touching::of(self.pieces, &self.pairs.all[index as usize]));
+        for (touch, pair) in touches.iter().zip(pair.iter().cycle()) {
+            self.add(active.bodies, pair, touch, start, out);
+        }
         out.touches = touches;
-        self.hand_on(span, 5.0 * pair.near, start, out);
+        self.hand_on(span, near, start, out);
         let count = (out.contacts.len() - start) as u32;
-        out.elastic |= count > 0 && pair.surface.restitution > 0.0;
-        let (place, turn) = lie;
-        out.spans.push((count, Searched { place, turn, room, hold }));
+        out.elastic |= pair.is_some_and(|pair| pair.surface.restitution > 0.0);
+        out.found.push(Found { pair: index, count, searched });
+    }
+
+    /// Notes where the points of a contact lie now.
+    fn move_contact(
+        &self,
+        (pair, bodies): (u32, (u32, u32)),
+        touches: &[Touch],
+        searched: Searched,
+        out: &mut ContactSet,
+    ) {
+        let frames = self.frames.both(bodies);
+        let mut anchors = [Default::default(); 2];
+        for (anchors, touch) in anchors.iter_mut().zip(touches) {
+            *anchors = touch.anchors(frames);
+        }
+        out.moved.push(Moved { pair, searched, normal: touches[0].fixed_normal(frames), anchors });
     }
 
     fn is_wanted(&self, (a, b): (u32, u32)) -> bool {
@@ -67,18 +101,13 @@ impl PairContacts<'_> {
 
     /// Appends the contacts of the last search.
     fn keep_all(&self, index: u32, span: Span, out: &mut ContactSet) {
-        out.spans.push((span.count, span.searched));
+        out.found.push(Found { pair: index, count: span.count, searched: span.searched });
         if span.count == 0 {
             return;
         }
         out.contacts.extend_from_slice(&self.last.contacts[span.range()]);
-        let first = out.caches.len();
         out.caches.extend_from_slice(&self.last.caches[span.range()]);
-        for cache in &mut out.caches[first..] {
-            out.elastic |= cache.surface.restitution > 0.0;
-            // The number of a pair changes with the list of pairs.
-            cache.pair = index;
-        }
+        out.elastic |= self.last.caches[span.range()].iter().any(|cache| cache.surface.restitution > 0.0);
     }
 
     /// Place of one body in the coordinates of the other, and their angle; the rotation of a disc does not count.
@@ -124,20 +153,13 @@ impl PairContacts<'_> {
     }
 
     /// Adds a point to the contacts of the pair, which begin at `start`.
-    fn add(
-        &self,
-        (index, bodies): (u32, (u32, u32)),
-        pair: &Meeting,
-        touch: &Touch,
-        start: usize,
-        out: &mut ContactSet,
-    ) {
+    fn add(&self, bodies: (u32, u32), pair: &Touching, touch: &Touch, start: usize, out: &mut ContactSet) {
         let frames = self.frames.both(bodies);
         let fitting = out.contacts[start..].iter().position(|contact| contact.has_room(touch.normal));
         let place = fitting.map_or(out.contacts.len(), |place| start + place);
         if place == out.contacts.len() {
             out.contacts.push(Contact::new(bodies, touch.normal, pair.rolling_arm));
-            out.caches.push(ContactCache::new((index, pair.wall), pair.surface, touch, frames));
+            out.caches.push(ContactCache::new(pair.wall, pair.surface, touch, frames));
         }
         out.contacts[place].add(touch, &mut out.caches[place], frames);
     }
@@ -149,9 +171,13 @@ impl PairContacts<'_> {
         }
         let known = if span.frozen { self.frozen } else { self.last };
         let scale = if span.frozen { self.dt * self.dt } else { 1.0 };
-        let (contacts, caches) = (&known.contacts[span.range()], &known.caches[span.range()]);
+        out.known.clear();
+        out.known.extend_from_slice(&known.contacts[span.range()]);
+        if let Some(blocks) = self.staying {
+            span.range().zip(&mut out.known).for_each(|(number, contact)| blocks.give_impulses(number, contact));
+        }
         for (contact, cache) in out.contacts[start..].iter_mut().zip(&out.caches[start..]) {
-            keep((contact, cache), (contacts, caches), near, scale);
+            keep((contact, cache), (&out.known, &known.caches[span.range()]), near, scale);
         }
     }
 }

@@ -4,6 +4,7 @@ use super::bounds::{Bounds, NONE};
 use super::broad::Broad;
 use super::pieces::{Piece, Pieces};
 use super::reach::Reach;
+use super::touch::Points;
 use crate::math::Vector64;
 use crate::rigid::{Bodies, Surface};
 
@@ -25,12 +26,16 @@ pub(super) struct Pair {
 pub(super) struct Meeting {
     /// The piece of the first body of a contact, and the other piece.
     pub pieces: (u32, u32),
-    pub wall: u32,
     pub kind: Kind,
-    pub surface: Surface,
-    pub rolling_arm: f64,
     /// Gap below which contacts are kept, in addition to the gap required by motion \[m].
     pub near: f64,
+}
+
+/// What its contacts need of a pair.
+pub(super) struct Touching {
+    pub wall: u32,
+    pub surface: Surface,
+    pub rolling_arm: f64,
 }
 
 /// The types of two colliding pieces.
@@ -63,6 +68,8 @@ pub(super) struct Searched {
     pub room: f64,
     /// Way after which the contacts are searched again \[m].
     pub hold: f64,
+    /// The points that touched.
+    pub points: Points,
 }
 
 impl Span {
@@ -88,6 +95,9 @@ pub(super) struct Pairs {
     pub active: Vec<Active>,
     /// Flags of the bodies that were movable when `active` was listed.
     was_active: Vec<bool>,
+    /// Spans of contacts whose pairs have left the list since its last update began.
+    #[serde(skip)]
+    pub dropped: Vec<Span>,
     #[serde(skip)]
     scratch: Scratch,
 }
@@ -183,11 +193,13 @@ impl Pairs {
         any
     }
 
-    /// Updates the list to contain all pairs of wanted bodies that can touch until the end of the frame.
-    pub fn update(&mut self, pieces: &Pieces, bodies: &Bodies, reach: &mut Reach, gravity: f64) {
-        if self.was_active.len() != bodies.len()
-            || (0..bodies.len()).any(|id| self.was_active[id] != bodies.is_active(id))
-        {
+    /// Updates the list to contain all pairs of wanted bodies that can touch until the end of the frame; whether other
+    /// bodies can move than in the last one.
+    pub fn update(&mut self, pieces: &Pieces, bodies: &Bodies, reach: &mut Reach, gravity: f64) -> bool {
+        self.dropped.clear();
+        let others = self.was_active.len() != bodies.len()
+            || (0..bodies.len()).any(|id| self.was_active[id] != bodies.is_active(id));
+        if others {
             self.list_active(bodies);
         }
         reach.note(bodies);
@@ -199,8 +211,11 @@ impl Pairs {
                 break;
             }
             self.list_active(bodies);
-            reach.allow(bodies, gravity, self.active.iter().map(|pair| pair.bodies));
+            // All others are known.
+            let found = self.scratch.found.iter().map(|&key| Pair::new(pieces, key).bodies);
+            reach.allow_for(bodies, gravity, found);
         }
+        others
     }
 
     /// Finds the wanted pieces that may leave their enlarged boxes; all pieces, if there are no boxes yet.
@@ -258,6 +273,8 @@ impl Pairs {
             if new.next_if_eq(&pair.key).is_some() || !left(&pair) {
                 all.push(pair);
                 spans.push(*span);
+            } else if span.count > 0 && !span.frozen {
+                self.dropped.push(*span);
             }
         }
         new.for_each(|key| add(key, all, spans));
@@ -306,32 +323,34 @@ fn ordered(pieces: &Pieces, (a, b): (u32, u32)) -> (u32, u32) {
 impl Meeting {
     pub fn of(pieces: &Pieces, pair: &Pair) -> Meeting {
         let (a, b) = ordered(pieces, pair.key);
-        let piece = &pieces.all[a as usize];
-        let plane = pieces.half_plane(b);
         let round = |piece: u32| pieces.view(piece).is_round();
-        let radius = |round: bool, radius: f64| if round { radius } else { f64::INFINITY };
-        let (surface, wall, size, rolling) = match plane {
-            Some(plane) => (&plane.surface, plane.wall, f64::INFINITY, f64::INFINITY),
+        let (kind, size) = match pieces.all.get(b as usize) {
+            None => (Kind::OnPlane, f64::INFINITY),
+            Some(other) if round(a) && round(b) => (Kind::Discs, other.size),
+            Some(other) => (Kind::Pieces, other.size),
+        };
+        Meeting { pieces: (a, b), kind, near: 0.01 * pieces.all[a as usize].size.min(size) }
+    }
+}
+
+impl Touching {
+    pub fn of(pieces: &Pieces, pair: &Pair) -> Touching {
+        let (a, b) = ordered(pieces, pair.key);
+        let radius = |index: u32, piece: &Piece| match pieces.view(index).is_round() {
+            true => piece.radius,
+            false => f64::INFINITY,
+        };
+        let piece = &pieces.all[a as usize];
+        let (surface, wall, rolling) = match pieces.half_plane(b) {
+            Some(plane) => (&plane.surface, plane.wall, f64::INFINITY),
             None => {
                 let other = &pieces.all[b as usize];
-                (&other.surface, other.wall, other.size, radius(round(b), other.radius))
+                (&other.surface, other.wall, radius(b, other))
             }
         };
-        let surface = piece.surface.combined(surface, pieces.rule);
-        let rolling = rolling.min(radius(round(a), piece.radius));
-        let kind = match plane {
-            Some(_) => Kind::OnPlane,
-            None if round(a) && round(b) => Kind::Discs,
-            None => Kind::Pieces,
-        };
-        Meeting {
-            pieces: (a, b),
-            wall,
-            kind,
-            surface,
-            rolling_arm: if rolling.is_finite() { surface.rolling_friction * rolling } else { 0.0 },
-            near: 0.01 * piece.size.min(size),
-        }
+        let (surface, rolling) = (piece.surface.combined(surface, pieces.rule), rolling.min(radius(a, piece)));
+        let rolling_arm = if rolling.is_finite() { surface.rolling_friction * rolling } else { 0.0 };
+        Touching { wall, surface, rolling_arm }
     }
 }
 

@@ -244,6 +244,13 @@ impl Pieces {
         self.all.len() + self.half_planes.len()
     }
 
+    /// Number of walls, up to the last one with a piece.
+    pub fn walls(&self) -> usize {
+        let of_planes = self.half_planes.iter().map(|plane| plane.wall);
+        let walls = of_planes.chain(self.all.iter().map(|piece| piece.wall)).filter(|wall| *wall != NONE);
+        walls.max().map_or(0, |last| last as usize + 1)
+    }
+
     /// The body a piece belongs to; half-planes and walls have none.
     pub fn body_of(&self, piece: u32) -> u32 {
         self.all.get(piece as usize).map_or(NONE, |piece| piece.body)

@@ -141,8 +141,13 @@ impl Reach {
 
     /// Computes the allowances of the wanted bodies: a body may be hit by each nearby body.
     pub fn allow(&mut self, bodies: &Bodies, gravity: f64, pairs: impl Iterator<Item = (u32, u32)>) {
-        let wall = bodies.len();
         self.fastest.clear();
+        self.allow_for(bodies, gravity, pairs);
+    }
+
+    /// The same with more pairs.
+    pub fn allow_for(&mut self, bodies: &Bodies, gravity: f64, pairs: impl Iterator<Item = (u32, u32)>) {
+        let wall = bodies.len();
         self.fastest.resize(wall + 1, 0.0);
         let (all, rows, fastest) = (self.wanted.iter().all(|wanted| *wanted), &self.rows[..], &mut self.fastest[..]);
         for (a, b) in pairs {

@@ -1,6 +1,5 @@
 //! Contacts and joints from a saved state: what the scene decides is kept from the run, what a run changes is checked.
 
-use super::blocks::Blocks;
 use super::joint_set::apart;
 use super::{Contacts, Islands, Jacobi, JointKind, Limits, Linked};
 use crate::rigid::Bodies;
@@ -13,8 +12,9 @@ impl Contacts {
         let walled = walls.iter().all(|column| column.len() == self.wall_impulses.len());
         let finite = walls.into_iter().flatten().all(|vector| vector.is_finite());
         // Impulses are scaled by its square.
+        let in_lanes = saved.blocks.is_sound(saved.narrow_phase.contacts());
         let timed = saved.dt == 0.0 || (1e-12..1e6).contains(&saved.dt);
-        if !(joined && walled && finite && timed) {
+        if !(joined && walled && finite && in_lanes && timed) {
             return None;
         }
         let mut jacobi = Jacobi::default();
@@ -30,7 +30,7 @@ impl Contacts {
             watch: self.watch.clone(),
             islands: Islands::from_saved(saved.islands, bodies.len()),
             jacobi,
-            blocks: Blocks::default(),
+            blocks: saved.blocks,
             split: Vec::new(),
             scaled: Vec::new(),
             counts: Vec::new(),

@@ -42,14 +42,24 @@ impl Contacts {
         self.narrow_phase.pass(dt);
     }
 
-    /// Searches the contacts of the bodies that need it; whether there were any.
+    /// Searches the contacts of the bodies that need it; whether all contacts are to be put into lanes.
     fn search(&mut self, bodies: &Bodies) -> bool {
-        let wanted = self.narrow_phase.wants(bodies, &self.moment);
-        if wanted {
-            self.note_impulses();
-            self.narrow_phase.search(bodies, &self.moment);
+        if !self.narrow_phase.wants(bodies, &self.moment) {
+            return false;
         }
-        wanted
+        let others_move = self.narrow_phase.find_pairs(bodies, &self.moment);
+        let (contacts, caches) = (self.narrow_phase.contacts(), self.narrow_phase.caches());
+        if self.in_lanes() && !others_move && self.blocks.may_stay(contacts.len(), bodies.len()) {
+            if self.blocks.is_to_be_laid_out() {
+                self.blocks.lay_out_saved(contacts, caches, bodies);
+            }
+            if self.narrow_phase.search_in_place(&mut self.blocks, bodies, self.moment.last_dt) {
+                return false;
+            }
+        }
+        self.note_impulses();
+        self.narrow_phase.search(&self.moment);
+        true
     }
 
     /// Whether contacts live in lanes from search to search: a rebound is that of a contact alone.

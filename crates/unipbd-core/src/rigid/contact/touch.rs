@@ -1,5 +1,6 @@
 //! A contact point as the narrow phase finds it.
 
+use super::frames::Frame;
 use crate::math::Vector64;
 
 /// The solid that the normal of a contact is fixed to.
@@ -35,6 +36,19 @@ impl Touch {
         (self.on_a - self.on_b).dot(self.normal) - self.radii[0] - self.radii[1]
     }
 
+    /// The normal in the coordinates of the solid that it is fixed to.
+    pub fn fixed_normal(&self, [a, b]: [Frame; 2]) -> Vector64 {
+        match self.reference {
+            Reference::First => a.turn_back(self.normal),
+            Reference::Second | Reference::Points => b.turn_back(self.normal),
+        }
+    }
+
+    /// The points of both solids, in their coordinates.
+    pub fn anchors(&self, [a, b]: [Frame; 2]) -> (Vector64, Vector64) {
+        (a.local(self.on_a), b.local(self.on_b))
+    }
+
     /// The same contact with the pieces swapped.
     pub fn reversed(self) -> Touch {
         Touch {
@@ -49,6 +63,31 @@ impl Touch {
             radii: [self.radii[1], self.radii[0]],
             feature: self.feature.rotate_left(16),
         }
+    }
+}
+
+/// The points of a pair in a search, with one normal: none if there were normals of several directions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, serde::Serialize, serde::Deserialize)]
+pub(super) struct Points {
+    reference: Option<Reference>,
+    features: [u32; 2],
+    count: u32,
+}
+
+impl Points {
+    pub fn of(touches: &[Touch]) -> Points {
+        let (Some(first), 1..=2) = (touches.first(), touches.len()) else { return Points::default() };
+        let last = &touches[touches.len() - 1];
+        if (first.reference, first.normal) != (last.reference, last.normal) {
+            return Points::default();
+        }
+        let features = [first.feature, last.feature];
+        Points { reference: Some(first.reference), features, count: touches.len() as u32 }
+    }
+
+    /// Whether the same points touch along one normal as in another search.
+    pub fn stay(&self, before: &Points) -> bool {
+        self.count > 0 && self == before
     }
 }
 

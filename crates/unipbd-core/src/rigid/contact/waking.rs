@@ -9,7 +9,9 @@ impl Contacts {
     pub(crate) fn bodies_changed(&mut self, bodies: &mut Bodies) {
         self.islands.resize(bodies.len());
         self.islands.wake_pushed(bodies);
+        self.note_impulses();
         self.narrow_phase.rebuild(bodies);
+        self.blocks.disband();
     }
 
     /// Wakes the bodies that touch this one, and those that sleep with it.
