@@ -75,8 +75,8 @@ pub fn charts_section(charts: &[String]) -> String {
          nothing is 10 % cheaper without more error, or 10 % more exact at no more cost, which is how much both scatter. Each point \
          is run three times, those of wave and box nine times, in rounds over all curves, with relaxations half a percent apart: the \
          least processor time counts, and the mean of the errors, as those two hang on the arrangement by chance. The density error |C| is measured alike for all kernels, from positions alone: \
-         by a cubic spline whose radius is that of the widest kernel compared. The pressure grid is drawn, not judged: it carries \
-         one liquid in static walls alone. Nor are, for the wave and the box, settings whose worst C in the dam break is \
+         by a cubic spline whose radius is that of the widest kernel compared. The pressure grid is drawn, not judged: its \
+         target bounds the way of a substep, not the compression. Nor are, for the wave and the box, settings whose worst C in the dam break is \
          above 6 %: what gives way like a sponge keeps a wave, but is no liquid.\n\n",
     );
     charts.iter().for_each(|chart| {

@@ -137,7 +137,7 @@ pub const VARIANTS: &[Variant] = &[
     Variant { name: WITH_GRID, change: |t| t.solver.pressure_grid = PressureGridUse::On, scan: Scan::Targets },
 ];
 
-/// Drawn, but does not count: it carries one liquid in static walls alone, and is no choice for all of these cases.
+/// Drawn, but does not count: its target bounds the way of a substep, not the compression.
 const WITH_GRID: &str = "pressure grid, n by target";
 
 /// Sets kernel radius and where the constraint is taken.

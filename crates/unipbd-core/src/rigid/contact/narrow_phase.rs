@@ -226,8 +226,9 @@ impl NarrowPhase {
 
     /// The contacts of sleeping pairs: they store forces in place of impulses.
     pub fn frozen(&self) -> impl Iterator<Item = (&Contact, &ContactCache)> {
-        let spans = self.pairs.spans.iter().filter(|span| span.frozen).map(Span::range);
-        spans.flatten().map(|row| (&self.frozen.contacts[row], &self.frozen.caches[row]))
+        let spans = if self.frozen.contacts.is_empty() { &[][..] } else { &self.pairs.spans[..] };
+        let rows = spans.iter().filter(|span| span.frozen).flat_map(Span::range);
+        rows.map(|row| (&self.frozen.contacts[row], &self.frozen.caches[row]))
     }
 
     /// Stores the contacts of sleeping pairs, with forces in place of impulses.
