@@ -2,7 +2,7 @@
 
 use unipbd_core::scene::{GradientPoint, Scene, Substeps};
 use unipbd_core::{Solver, SolverError, SubstepView, Vector};
-use unipbd_tests::{Spread, bars, build, full_size, mean_of, run, scene, shipped};
+use unipbd_tests::{Spread, bars, build, full_size, mean_of, run, scene, shipped, water};
 
 fn energy(solver: &Solver) -> f64 {
     let diagnostics = solver.diagnostics();
@@ -199,6 +199,25 @@ fn a_liquid_is_held_against_the_pull_of_a_hook_as_against_gravity() {
                 bars.at_most(&of("energy gained"), gain, 0.02);
                 bars.at_most(&of("mean C"), compression, 0.015);
             }
+        });
+    }
+}
+
+#[test]
+fn small_pools_rest_in_frames_of_a_sixtieth_of_a_second() {
+    for spacing in [5e-5, 2e-4, 1e-3, 4e-3] {
+        let depth = 20.0 * spacing;
+        let rest = format!("[[tank]]\nmin = [0.0, 0.0]\nmax = [{depth}, {}]\n", 3.0 * depth);
+        let mut solver = build(&water(depth, depth, spacing, &rest), 2);
+        let (mut worst, mut square): (f64, f64) = (0.0, 0.0);
+        run(&mut solver, 40, |solver| {
+            worst = worst.max(solver.diagnostics().density_error_max);
+            square = mean_of(solver.velocities().iter().map(|v| f64::from(v.length_squared())));
+        });
+        bars("pools of 20 spacings", |bars| {
+            let of = |what: &str| format!("{what}, spacing {spacing} m");
+            bars.at_most(&of("worst C over the target"), worst / 0.01, 2.0);
+            bars.at_most(&of("speed [sqrt(g dx)]"), (square / (9.81 * spacing)).sqrt(), 0.1);
         });
     }
 }

@@ -1,7 +1,7 @@
 //! What a scene would cost, without building it.
 
 use super::layout::{block_counts, disc_count, particle_counts};
-use super::{Emitter, Profile, Scene, SubstepLaw, Substeps};
+use super::{Drive, Emitter, Profile, Scene, SubstepLaw, Substeps};
 
 /// Memory per particle \[byte]: columns, multipliers and about 20 stored neighbours.
 pub const BYTES_PER_PARTICLE: u64 = 300;
@@ -149,7 +149,8 @@ fn automatic_substeps(scene: &Scene) -> u32 {
         // Substeps follow the speed alone: about that of a fall through half the depth, once it moves.
         speed = speed.max(pressure.sqrt());
     }
-    let wanted = SubstepLaw::new(scene).wanted(1.0 / scene.fps, speed, pressure);
+    let acceleration = libm::hypot(scene.gravity[0], scene.gravity[1]);
+    let wanted = SubstepLaw::new(scene).wanted(1.0 / scene.fps, Drive { speed, pressure, acceleration });
     let count = wanted.into_iter().fold(1.0, f64::max).ceil();
     (count as u32).min(scene.solver.max_substeps)
 }

@@ -58,7 +58,7 @@ pub(crate) use contacts::{OVER_RELAXATION, SLEEP_SPEED};
 pub(crate) use copies::MOST_BODIES;
 pub(crate) use crowding::crowd;
 pub(crate) use layout::{block_points, disc_points};
-pub(crate) use substep_law::{COURANT, SubstepLaw};
+pub(crate) use substep_law::{COURANT, Drive, SubstepLaw};
 pub(crate) use tension_law::{TENSION_RADIUS, TensionLaw};
 pub(crate) use validate::FARTHEST;
 pub use validate::{FRAME_RATES, LONGEST_DURATION};

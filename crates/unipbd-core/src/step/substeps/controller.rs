@@ -1,7 +1,7 @@
 //! The number of substeps of a frame, and the reason for it.
 
 use crate::observe::SubstepReason;
-use crate::scene::{Scene, SubstepLaw, Substeps};
+use crate::scene::{Drive, Scene, SubstepLaw, Substeps};
 
 /// The number of substeps is kept while at least this fraction of it is demanded, and falls no faster: each
 /// change of it changes the compression that carries a liquid, and excites oscillations.
@@ -19,6 +19,8 @@ pub struct Demand {
     pub speed: f64,
     /// Largest pressure over density, from the multipliers or the depth of the liquid [m^2/s^2].
     pub pressure: f64,
+    /// Acceleration of the fluids by gravity and hooks [m/s^2].
+    pub acceleration: f64,
     /// Substeps that rigid bodies need by their speed and spin.
     pub body_motion: f64,
     /// Substeps that rigid bodies need by the height of stacks and their mass ratios.
@@ -29,7 +31,20 @@ pub struct Demand {
 
 impl Default for Demand {
     fn default() -> Self {
-        Demand { speed: 0.0, pressure: 0.0, body_motion: 0.0, support: 0.0, over_stored: f64::INFINITY }
+        Demand {
+            speed: 0.0,
+            pressure: 0.0,
+            acceleration: 0.0,
+            body_motion: 0.0,
+            support: 0.0,
+            over_stored: f64::INFINITY,
+        }
+    }
+}
+
+impl Demand {
+    fn drive(&self) -> Drive {
+        Drive { speed: self.speed, pressure: self.pressure, acceleration: self.acceleration }
     }
 }
 
@@ -102,7 +117,7 @@ impl SubstepRule {
             return 1.0;
         }
         let square = |part: f64| part * part;
-        let [_, _, compression, _] = self.law.wanted(frame, demand.speed, demand.pressure);
+        let [_, _, compression, _] = self.law.wanted(frame, demand.drive());
         let least = square(compression / f64::from(substeps));
         let kept = before * square(f64::from(last) / f64::from(substeps));
         let most = kept * (1.0 + RELEASED * demand.over_stored);
@@ -114,6 +129,11 @@ impl SubstepRule {
         self.law.confines_gas
     }
 
+    /// Speed that a fluid at rest may gain in its first frame: see the law.
+    pub fn first_speed(&self, frame: f64, acceleration: f64, depth: f64) -> f64 {
+        self.law.first_speed(frame, acceleration, depth)
+    }
+
     /// Largest pressure over density that surface tension may bring about [m^2/s^2].
     pub fn tension_pressure(&self) -> f64 {
         self.law.tension_pressure()
@@ -121,7 +141,7 @@ impl SubstepRule {
 
     /// The largest of the demands: speed, trust region, target compression, surface tension, motion and support of bodies.
     fn wanted(&self, frame: f64, demand: Demand) -> (f64, SubstepReason) {
-        let [speed, trust, compression, tension] = self.law.wanted(frame, demand.speed, demand.pressure);
+        let [speed, trust, compression, tension] = self.law.wanted(frame, demand.drive());
         let fast = demand.speed * demand.speed > demand.pressure;
         let demands = [
             (speed, SubstepReason::Speed),
@@ -143,29 +163,32 @@ mod tests {
         SubstepRule::new(&Scene { spacing: 0.1, ..Scene::default() })
     }
 
+    fn driven(speed: f64, pressure: f64) -> Demand {
+        Demand { speed, pressure, ..Demand::default() }
+    }
+
     #[test]
     fn substeps_grow_with_the_square_root_of_the_depth() {
-        let at =
-            |depth: f64| rule().choose(1.0 / 60.0, Demand { pressure: 9.81 * depth, ..Demand::default() }).substeps;
+        let at = |depth: f64| rule().choose(1.0 / 60.0, driven(0.0, 9.81 * depth)).substeps;
         assert_eq!(at(3.0), 7);
         assert!((f64::from(at(120.0)) / f64::from(at(30.0)) - 2.0).abs() < 0.1);
     }
 
     #[test]
     fn speed_is_bound_to_two_fifths_of_a_spacing() {
-        let choice = rule().choose(1.0 / 60.0, Demand { speed: 12.0, ..Demand::default() });
+        let choice = rule().choose(1.0 / 60.0, driven(12.0, 0.0));
         assert_eq!(choice.substeps, 5);
     }
 
     #[test]
     fn the_cap_binds_and_says_what_was_wanted() {
-        let choice = rule().choose(1.0, Demand { speed: 1e4, ..Demand::default() });
+        let choice = rule().choose(1.0, driven(1e4, 0.0));
         assert_eq!((choice.substeps, choice.wanted, choice.reason), (256, 250_000, SubstepReason::Speed));
     }
 
     #[test]
     fn the_number_rises_at_once_and_falls_slowly() {
-        let after = |last, speed| rule().choose_after(last, 1.0 / 60.0, Demand { speed, ..Demand::default() }).substeps;
+        let after = |last, speed| rule().choose_after(last, 1.0 / 60.0, driven(speed, 0.0)).substeps;
         assert_eq!(after(5, 24.0), 10);
         assert_eq!(after(10, 23.0), 10, "a little less changes nothing");
         assert_eq!(after(10, 2.4), 7, "much less is approached in steps");
@@ -174,7 +197,7 @@ mod tests {
 
     #[test]
     fn stiffness_does_not_jump_with_the_number_of_substeps() {
-        let demand = |pressure| Demand { speed: 10.0, pressure, ..Demand::default() };
+        let demand = |pressure| driven(10.0, pressure);
         let after = |last, now, pressure| rule().stiffness_after(last, 1.0, 1.0 / 60.0, demand(pressure), now);
         let full = |part: f64, substeps: f64| part * substeps * substeps;
         assert_eq!(after(0, 2, 0.0), 1.0, "there is nothing to keep at the start");
@@ -188,11 +211,11 @@ mod tests {
     #[test]
     fn the_demand_that_decides_is_named() {
         let reason = |demand| rule().choose(1.0 / 60.0, demand).reason;
-        assert_eq!(reason(Demand { speed: 50.0, ..Demand::default() }), SubstepReason::Speed);
-        assert_eq!(reason(Demand { pressure: 30.0, ..Demand::default() }), SubstepReason::Compression);
+        assert_eq!(reason(driven(50.0, 0.0)), SubstepReason::Speed);
+        assert_eq!(reason(driven(0.0, 30.0)), SubstepReason::Compression);
         let loose = Scene { spacing: 0.1, ..Scene::default() };
         let loose = Scene { solver: crate::scene::SolverSettings { target_compression: 0.1, ..loose.solver }, ..loose };
-        let still = Demand { pressure: 30.0, ..Demand::default() };
+        let still = driven(0.0, 30.0);
         assert_eq!(SubstepRule::new(&loose).choose(1.0 / 60.0, still).reason, SubstepReason::TrustRegion);
         assert_eq!(reason(Demand { support: 100.0, ..Demand::default() }), SubstepReason::Support);
     }

@@ -56,7 +56,11 @@ impl World {
     fn demand(&self, liquids: FluidStatistics) -> Demand {
         let parts = &self.parts;
         let emitted = parts.emitters.as_ref().map_or(0.0, |emitters| emitters.speed_max(self.clock.time));
-        let moving = if self.clock.step == 0 { self.fastest() } else { self.clock.speed };
+        let acceleration = self.pull().length() + self.clock.push.spread;
+        let moving = match self.clock.step {
+            0 => self.fastest() + parts.substeps.first_speed(parts.frame_time, acceleration, liquids.fall()),
+            _ => self.clock.speed,
+        };
         let of_bodies = |rigid: &RigidBodies| rigid.demand(parts.frame_time, wide(parts.gravity));
         let bodies = parts.rigid.as_ref().filter(|_| !parts.substeps.is_fixed()).map(of_bodies).unwrap_or_default();
         // Pressure from the relative motion within the liquids.
@@ -66,9 +70,10 @@ impl World {
         let pressure = of_depth.max(self.buoyancy_pressure()).max(dynamic).max(known / UNEXPECTED);
         Demand {
             speed: moving.max(emitted),
+            pressure,
+            acceleration,
             body_motion: bodies.motion,
             support: bodies.support,
-            pressure,
             over_stored: self.energy_over_stored(liquids, of_depth),
         }
     }

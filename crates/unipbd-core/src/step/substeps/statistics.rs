@@ -75,6 +75,11 @@ impl FluidStatistics {
     pub fn depth(self) -> f64 {
         f64::from(self.reach[0]) + f64::from(self.reach[1])
     }
+
+    /// The depth, or 0 where there is nothing \[m].
+    pub fn fall(self) -> f64 {
+        if self.depth().is_finite() { self.depth() } else { 0.0 }
+    }
 }
 
 impl World {
