@@ -1,6 +1,6 @@
 //! What a case is, and what comes of it.
 
-use unipbd_core::scene::{LegacySettings, Scene, SolverSettings};
+use unipbd_core::scene::{LegacySettings, PressureGridUse, Scene, SolverSettings};
 
 use crate::runner::{Cost, Failure, Runner};
 
@@ -105,6 +105,11 @@ impl Trial {
         let mut runner = Runner::new(scene)?;
         runner.most = self.frames;
         Ok(runner)
+    }
+
+    /// A band that is meant for the pressure grid; without it the figure is reported only.
+    pub fn with_grid(&self, band: Band) -> Band {
+        if self.solver.pressure_grid == PressureGridUse::Off { Band::OPEN } else { band }
     }
 
     /// A band that is meant for this target compression, or a lower one; above it the figure is reported only.

@@ -7,6 +7,21 @@ use crate::case::Case;
 /// Cases of one liquid in static walls, and near enough ones: they run with the pressure grid too.
 const WITH_GRID: [&str; 5] = ["column", "dam_break", "standing_wave", "elliptical_drop", "oscillating_drop"];
 
+/// Cases that are there for the pressure grid: their quick size runs with it.
+const FOR_GRID: [&str; 11] = [
+    "solitary_wave",
+    "drain",
+    "taylor_green_box",
+    "vortex_pair",
+    "vortex_pair_gas",
+    "light_floats",
+    "added_mass",
+    "piston",
+    "press",
+    "slab",
+    "work",
+];
+
 /// The particles alone, with this target.
 pub fn settings(target: f64) -> SolverSettings {
     SolverSettings { target_compression: target, pressure_grid: PressureGridUse::Off, ..SolverSettings::default() }
@@ -28,7 +43,7 @@ pub struct Line {
 impl Line {
     /// The line of a case at its quick size.
     pub fn quick(case: &'static Case) -> Line {
-        Line { case, resolution: case.quick, target: 0.01, grid: false }
+        Line { case, resolution: case.quick, target: 0.01, grid: FOR_GRID.contains(&case.name) }
     }
 
     /// How the constraints are solved.
@@ -51,7 +66,7 @@ pub fn lines(case: &'static Case) -> Vec<Line> {
     resolutions.dedup();
     let at = |resolution: u32| {
         let line = move |target: f64, grid: bool| Line { case, resolution, target, grid };
-        let with_grid = WITH_GRID.contains(&case.name).then(|| line(0.01, true));
+        let with_grid = (WITH_GRID.contains(&case.name) || FOR_GRID.contains(&case.name)).then(|| line(0.01, true));
         case.targets.iter().map(move |&target| line(target, false)).chain(with_grid)
     };
     resolutions.into_iter().flat_map(at).collect()

@@ -1,6 +1,6 @@
 //! Quick sizes of the cases against their bands, and a part of the stresses.
 
-use unipbd_core::scene::{GradientPoint, Scene, SolverSettings, Substeps};
+use unipbd_core::scene::{GradientPoint, PressureGridUse, Scene, SolverSettings, Substeps};
 use unipbd_validation::plan::{Line, lines, settings};
 use unipbd_validation::report::{Entry, section};
 use unipbd_validation::stress::map::MAPS;
@@ -18,6 +18,17 @@ fn holds(name: &str) {
     let missed: Vec<String> =
         outcome.missed().map(|figure| format!("{}: {:.5e} ({})", figure.what, figure.value, figure.band)).collect();
     assert!(missed.is_empty(), "{name} misses:\n  {}", missed.join("\n  "));
+}
+
+/// Runs a case at its quick size with the pressure grid; fails with all figures that miss their bands.
+#[track_caller]
+fn holds_with_grid(name: &str) {
+    let case = cases::find(name).unwrap_or_else(|| panic!("no case {name}"));
+    let entry = Entry::run(Line::quick(case));
+    assert!(entry.line.grid, "{name}");
+    let outcome = entry.result.unwrap_or_else(|failure| panic!("{failure}"));
+    let missed: Vec<_> = outcome.missed().collect();
+    assert!(missed.is_empty(), "{name} misses:\n  {missed:?}");
 }
 
 /// A wide kernel with the constraint taken early, at the cost of the default setting.
@@ -101,6 +112,58 @@ fn a_column_presses_with_its_weight() {
     assert!(figure("two_layers", 24, &solver, "pressure error of the upper layer").abs() <= 0.02);
     assert!(figure("two_layers", 24, &solver, "pressure error of the lower layer").abs() <= 0.02);
     assert!(figure("two_layers", 24, &solver, "error of the force on the floor").abs() <= 0.002);
+}
+
+#[test]
+fn with_the_grid_water_runs_out_of_a_hole_as_it_does() {
+    holds_with_grid("drain");
+    let grid = SolverSettings { pressure_grid: PressureGridUse::On, ..settings(0.01) };
+    let eight = figure("drain", 8, &grid, "discharge coefficient");
+    assert!((0.60..=0.67).contains(&eight), "{eight}");
+}
+
+#[test]
+fn with_the_grid_a_disc_that_is_let_go_takes_water_along() {
+    holds_with_grid("added_mass");
+}
+
+#[test]
+fn with_the_grid_light_floats_are_calm() {
+    holds_with_grid("light_floats");
+}
+
+#[test]
+fn with_the_grid_a_solitary_wave_keeps_its_crest_over_twenty_depths() {
+    holds_with_grid("solitary_wave");
+}
+
+#[test]
+fn with_the_grid_vortices_carry_each_other_along_in_liquid_and_gas() {
+    holds_with_grid("vortex_pair");
+    holds_with_grid("vortex_pair_gas");
+}
+
+#[test]
+fn with_the_grid_loads_on_shut_in_water_and_falling_water_stop() {
+    holds_with_grid("piston");
+    holds_with_grid("press");
+    holds_with_grid("slab");
+}
+
+#[test]
+fn with_the_grid_vortices_between_walls_decay_nearly_as_their_viscosity_says() {
+    let grid = SolverSettings { pressure_grid: PressureGridUse::On, ..settings(0.01) };
+    let fitted = figure("taylor_green_box", 100, &grid, "fitted viscosity over the true one");
+    assert!((0.9..=1.25).contains(&fitted), "{fitted}");
+}
+
+#[test]
+fn with_the_grid_what_rests_takes_no_more_substeps_the_more_there_is() {
+    let outcome = Entry::run(Line::quick(cases::find("work").expect("the case exists"))).result.expect("it runs");
+    for kind in ["two layers", "floats", "closed gas"] {
+        let power = outcome.figure(&format!("{kind}: power of the substeps")).expect("it is measured");
+        assert!(power <= 0.04, "{kind}: {power}");
+    }
 }
 
 #[test]

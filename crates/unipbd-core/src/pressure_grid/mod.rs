@@ -110,6 +110,11 @@ impl PressureGrid {
         width * width * self.mixture.heaviest
     }
 
+    /// Mass of the heaviest fluid particle \[kg].
+    pub(crate) fn heaviest(&self) -> f64 {
+        f64::from(self.mixture.heaviest)
+    }
+
     /// The places of matter in bodies that are no particles, to be written before a projection \[m].
     pub(crate) fn filled_mut(&mut self) -> &mut Vec<Vector> {
         &mut self.filled
@@ -136,7 +141,8 @@ impl PressureGrid {
         solve(self.accuracy, true);
         solve(Accuracy { tolerance: LOOSER_MOVES * self.accuracy.tolerance, ..self.accuracy }, false);
         if !self.mixture.fills {
-            system.end_suction(&self.components);
+            let liquid = (multigrid.spans(), self.lattice.stride());
+            system.end_suction(&self.openings, &self.components, liquid, parallelism);
         }
         system.join_solutions(&self.lattice);
         system.difference(&self.lattice, &self.openings, multigrid.spans(), parallelism);

@@ -7,7 +7,7 @@ use super::chords::Outline;
 use super::lattice::Lattice;
 use crate::bytes::held;
 use crate::math::{Real, Vector64};
-use crate::rigid::{Bodies, Mobilities, Mobility, Twist};
+use crate::rigid::{Bodies, Mobilities, Mobility, Pose, Twist};
 use std::ops::Range;
 
 /// A face covered to more than this part is covered wholly.
@@ -131,9 +131,10 @@ impl Solids {
     }
 
     /// Lists the faces of one body. The part of a face is that of the cell-wide box around it, so that the force on a
-    /// body changes continuously with its place: lines along the direction of the face cut the outline.
+    /// body changes continuously with its place: lines along the direction of the face cut the outline, where it is in the
+    /// middle of the substep. Where it starts would do but for light floats, which the step then throws up again and again.
     fn cover(&mut self, lattice: &Lattice, bodies: &Bodies, body: u32) {
-        let pose = bodies.pose(body);
+        let pose = halfway(bodies.pose(body), bodies.predicted_pose(body));
         let mut outline = std::mem::take(&mut self.outline);
         outline.take(&bodies.views()[body as usize], pose);
         let (cell, origin) = (f64::from(lattice.cell), lattice.lowest());
@@ -283,6 +284,11 @@ impl Covered {
     pub fn back(&self, stride: usize) -> usize {
         self.cell as usize - if self.axis == 0 { 1 } else { stride }
     }
+}
+
+/// The pose between two.
+fn halfway(from: Pose, to: Pose) -> Pose {
+    Pose { position: from.position.lerp(to.position, 0.5), angle: 0.5 * (from.angle + to.angle) }
 }
 
 /// The whole numbers from `low` up to `high`, between 0 and `most`.

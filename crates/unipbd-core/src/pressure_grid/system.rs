@@ -201,13 +201,28 @@ impl System {
         }
     }
 
-    /// Ends suction at bodies in fluid that meets air: it parts from them.
-    pub fn end_suction(&mut self, components: &Components) {
-        for cell in self.touched.iter().map(|&cell| cell as usize) {
-            if self.pressure[cell] < 0.0 && components.meets_air(cell) {
-                self.pressure[cell] = 0.0;
+    /// Ends suction at walls and bodies in fluid that meets air: it parts from them. A jet would else fill the hole that it
+    /// leaves by, and draw more through it: 0.75 of sqrt(2 g head), not 0.61.
+    pub fn end_suction(
+        &mut self,
+        openings: &Openings,
+        components: &Components,
+        (spans, stride): (&Spans, usize),
+        parallelism: Parallelism,
+    ) {
+        let at_wall = |cell: usize| {
+            let faces =
+                [openings.left[cell], openings.left[cell + 1], openings.lower[cell], openings.lower[cell + stride]];
+            faces.into_iter().any(|open| open < 1.0)
+        };
+        let bare = &self.bare;
+        spans.each(&mut self.pressure, parallelism, |first, pressure| {
+            for (cell, pressure) in (first..).zip(pressure) {
+                if *pressure < 0.0 && (bare[cell] < 1.0 || at_wall(cell)) && components.meets_air(cell) {
+                    *pressure = 0.0;
+                }
             }
-        }
+        });
     }
 
     /// Takes the covered parts of faces from the open ones.
