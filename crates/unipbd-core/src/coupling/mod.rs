@@ -210,39 +210,24 @@ impl RigidBodies {
     }
 
     /// Sums the forces on the samples of each body, in the order of its samples.
-    /// `loads` are forces times dt^2 by row [kg m]. With a grid, the mass of its heaviest fluid particle is `of_grid`.
-    pub(crate) fn take_loads(
-        &mut self,
-        loads: &[Vector],
-        of_grid: Option<f64>,
-        (particles, rows): (&Particles, &RowIndex),
-        dt: f64,
-    ) {
+    /// `loads` are forces times dt^2 by row [kg m].
+    pub(crate) fn take_loads(&mut self, loads: &[Vector], particles: &Particles, rows: &RowIndex, dt: f64) {
         for body in 0..self.bodies.len() as u32 {
             if self.sleeps_with_samples(body, particles, rows) {
                 continue;
             }
             let center = self.bodies.predicted_pose(body).position;
-            let (mut force, mut torque, mut pushed) = (Vector64::ZERO, 0.0, 0);
+            let (mut force, mut torque) = (Vector64::ZERO, 0.0);
             for id in self.samples_of(body) {
                 let Some(row) = rows.row(id) else { continue };
                 let load = wide(loads[row as usize]);
-                pushed += u32::from(load != Vector64::ZERO);
                 force += load;
                 torque += (wide(particles.position[row as usize]) - center).perp_dot(load);
             }
             if force != Vector64::ZERO || torque != 0.0 {
-                let part = of_grid.map_or(1.0, |mass| self.part_of_load(body, f64::from(pushed) * mass));
-                let per = part / (dt * dt);
-                self.bodies.load(body, force * per, torque * per, dt);
+                self.bodies.load(body, force / (dt * dt), torque / (dt * dt), dt);
             }
         }
-    }
-
-    /// The part of the push of particles that a body takes where a grid carries the pressure. They are moved as by a body
-    /// that does not give way: with the mass of those at its samples \[kg] on the other side, the push is less.
-    fn part_of_load(&self, body: u32, particles: f64) -> f64 {
-        1.0 / (1.0 + self.bodies.response(body).linear * particles)
     }
 
     /// Ids of the samples of a body.

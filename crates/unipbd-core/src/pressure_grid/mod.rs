@@ -110,11 +110,6 @@ impl PressureGrid {
         width * width * self.mixture.heaviest
     }
 
-    /// Mass of the heaviest fluid particle \[kg].
-    pub(crate) fn heaviest(&self) -> f64 {
-        f64::from(self.mixture.heaviest)
-    }
-
     /// The places of matter in bodies that are no particles, to be written before a projection \[m].
     pub(crate) fn filled_mut(&mut self) -> &mut Vec<Vector> {
         &mut self.filled

@@ -11,7 +11,7 @@ use crate::math::{Real, Vector, wide};
 use crate::neighbors::{Prepared, SearchPositions};
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
-use crate::pressure_grid::{Immersed, PressureGrid};
+use crate::pressure_grid::Immersed;
 
 /// Speed in spacings per frame beyond which a run has diverged.
 pub(crate) const ABSURD_SPEED: f64 = 1e6;
@@ -248,8 +248,7 @@ impl World {
     fn load_bodies(&mut self) {
         let parts = &mut self.parts;
         let Some(rigid) = &mut parts.rigid else { return };
-        let of_grid = parts.pressure_grid.as_ref().map(PressureGrid::heaviest);
-        rigid.take_loads(self.corrections.loads(), of_grid, (&parts.particles, &self.rows), self.clock.dt);
+        rigid.take_loads(self.corrections.loads(), &parts.particles, &self.rows, self.clock.dt);
         rigid.take_outline_loads(self.corrections.outline_loads(), &parts.outlines, self.clock.dt);
     }
 

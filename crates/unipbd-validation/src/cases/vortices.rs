@@ -15,7 +15,7 @@ pub const VORTEX_PAIR: Case = Case {
     name: "vortex_pair",
     truth: "point vortices b apart: Gamma/(2 pi b), with their images behind the walls of the box; over 5 b",
     quick: 16,
-    full: &[24, 32],
+    full: &[24],
     targets: &[0.01],
     run: |trial| vortex_pair(trial, Filling::Liquid),
 };

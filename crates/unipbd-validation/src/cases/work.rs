@@ -11,7 +11,7 @@ pub const WORK: Case = Case {
     name: "work",
     truth: "the work of what rests grows as the number of particles N, without more substeps",
     quick: 16,
-    full: &[48],
+    full: &[32],
     targets: &[0.01],
     run: work,
 };
