@@ -12,7 +12,7 @@ use crate::walls::Coverage;
 const EDGE: [f64; 2] = [0.05, 0.15];
 /// c over sigma, measured: the force along a surface is more than its energy per length, since surfaces that are drawn
 /// out become thinner.
-const LINE: f64 = 0.5;
+const LINE: f64 = 0.495;
 /// k dx over sigma.
 const HOLD: f64 = 40.0;
 /// Strength of the attraction of walls that are wetted: measured, as for [`LINE`].

@@ -311,7 +311,7 @@ pub(super) fn carry_remainders(particles: &mut Particles, parallelism: Paralleli
 
 /// The part of a displacement and of the old remainder that was lost in the rounding of a position.
 #[inline(always)]
-fn left_over(displacement: Vector, remainder: Vector, moved: Vector) -> Vector {
+pub(super) fn left_over(displacement: Vector, remainder: Vector, moved: Vector) -> Vector {
     (displacement + remainder) - moved
 }
 

@@ -67,7 +67,7 @@ impl World {
             }
         }
         integrate::carry_remainders(&mut self.parts.particles, self.parts.parallelism);
-        let farthest = carry_momentum(&mut self.parts.particles, &carried);
+        let farthest = carry_momentum(&mut self.parts.particles, &carried, self.parts.parallelism);
         integrate::wrap(&mut self.parts.particles, self.parts.neighbors.periodic(), self.parts.parallelism);
         farthest
     }
@@ -76,15 +76,18 @@ impl World {
 /// Moves particles by the fraction of their last displacement kept by [`carry_momentum`]. The column of displacements
 /// holds it until [`take_carried`].
 fn start_projection(particles: &mut Particles, parallelism: Parallelism) {
-    particles.start.copy_from_slice(&particles.position);
-    for (row, phase) in particles.phase.iter().enumerate() {
-        if *phase != Phase::Smoke {
-            particles.position[row] =
-                displaced(particles.start[row], particles.displacement[row], particles.remainder[row]);
+    let Particles { position, start, remainder, displacement, phase, .. } = particles;
+    parallelism.chunks3(position, start, remainder, |first, position, start, remainder| {
+        for (k, x) in position.iter_mut().enumerate() {
+            let row = first + k;
+            if phase[row] != Phase::Smoke {
+                let place = displaced(*x, displacement[row], remainder[k]);
+                remainder[k] = integrate::left_over(displacement[row], remainder[k], place - *x);
+                *x = place;
+            }
+            start[k] = *x;
         }
-    }
-    integrate::carry_remainders(particles, parallelism);
-    particles.start.copy_from_slice(&particles.position);
+    });
 }
 
 /// Takes the displacements out of their column, which from here on holds those of the projection.
@@ -96,17 +99,21 @@ fn take_carried(particles: &mut Particles) -> Vec<Vector> {
 
 /// Keeps a fraction of the displacement of a projection for the next one, if its push has the same direction. Returns
 /// the largest displacement \[m].
-fn carry_momentum(particles: &mut Particles, carried: &[Vector]) -> f64 {
-    let mut farthest: Real = 0.0;
-    for ((displacement, phase), carried) in particles.displacement.iter_mut().zip(&particles.phase).zip(carried) {
-        if *phase != Phase::Smoke {
-            let way = *carried + *displacement;
-            farthest = larger(way.length_squared(), farthest);
+fn carry_momentum(particles: &mut Particles, carried: &[Vector], parallelism: Parallelism) -> f64 {
+    let (displacement, phase) = (&mut particles.displacement, &particles.phase);
+    let way = |row: usize, displacement: Vector| match phase[row] {
+        Phase::Smoke => Vector::ZERO,
+        _ => carried[row] + displacement,
+    };
+    let farthest = parallelism.max(displacement.len(), |row| way(row, displacement[row]).length_squared());
+    parallelism.update(displacement, |row, displacement| {
+        if phase[row] != Phase::Smoke {
+            let way = way(row, *displacement);
             let pushed = displacement.dot(way) > 0.0;
             *displacement = if pushed { way * MOMENTUM } else { Vector::ZERO };
         }
-    }
-    f64::from(farthest).sqrt()
+    });
+    f64::from(larger(farthest, 0.0)).sqrt()
 }
 
 fn zero_displacements(particles: &mut Particles) {
