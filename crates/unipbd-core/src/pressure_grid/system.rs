@@ -201,8 +201,9 @@ impl System {
         }
     }
 
-    /// Ends suction at walls and bodies in fluid that meets air: it parts from them. A jet would else fill the hole that it
-    /// leaves by, and draw more through it: 0.75 of sqrt(2 g head), not 0.61.
+    /// Ends suction at bodies in fluid that meets air, and at walls where air is near: fluid parts from them. A jet would
+    /// else fill the hole that it leaves by, and draw more through it: 0.75 of sqrt(2 g head), not 0.61. Elsewhere it
+    /// clings to walls, since no air can come between.
     pub fn end_suction(
         &mut self,
         openings: &Openings,
@@ -210,15 +211,19 @@ impl System {
         (spans, stride): (&Spans, usize),
         parallelism: Parallelism,
     ) {
-        let at_wall = |cell: usize| {
-            let faces =
-                [openings.left[cell], openings.left[cell + 1], openings.lower[cell], openings.lower[cell + stride]];
-            faces.into_iter().any(|open| open < 1.0)
+        let faces = |cell: usize| {
+            [openings.left[cell], openings.left[cell + 1], openings.lower[cell], openings.lower[cell + stride]]
         };
-        let bare = &self.bare;
+        let (bare, depth) = (&self.bare, &self.depth);
+        let is_air = |cell: usize| depth[cell] < 0.0 && faces(cell).into_iter().any(|open| open > 0.0);
+        let near_air = |cell: usize| {
+            let mut around = [cell - stride, cell, cell + stride].into_iter().flat_map(|row| row - 1..row + 2);
+            around.any(is_air)
+        };
+        let at_wall = |cell: usize| faces(cell).into_iter().any(|open| open < 1.0);
         spans.each(&mut self.pressure, parallelism, |first, pressure| {
-            for (cell, pressure) in (first..).zip(pressure) {
-                if *pressure < 0.0 && (bare[cell] < 1.0 || at_wall(cell)) && components.meets_air(cell) {
+            for (cell, pressure) in (first..).zip(pressure).filter(|(_, pressure)| **pressure < 0.0) {
+                if (bare[cell] < 1.0 || at_wall(cell) && near_air(cell)) && components.meets_air(cell) {
                     *pressure = 0.0;
                 }
             }
