@@ -66,22 +66,8 @@ fn worst_of_dam_break(scene: &Scene) -> f64 {
 /// A column of water at rest between two walls, as wide as it takes to be called a column.
 fn column(depth: u32, width: u32) -> Scene {
     let (depth, width) = (f64::from(depth) * 0.1, f64::from(width) * 0.1);
-    scene(&format!(
-        r#"
-        spacing = 0.1
-        [[liquid]]
-        name = "water"
-        [[block]]
-        material = "water"
-        min = [0.0, 0.0]
-        max = [{width}, {depth}]
-        [[tank]]
-        min = [0.0, 0.0]
-        max = [{width}, {top}]
-        open = ["top"]
-        "#,
-        top = 2.0 * depth
-    ))
+    let tank = format!("[[tank]]\nmin = [0.0, 0.0]\nmax = [{width}, {}]\nopen = [\"top\"]", 2.0 * depth);
+    water(width, depth, 0.1, &tank)
 }
 
 struct Rest {

@@ -23,6 +23,17 @@ pub fn pool(size: (f64, f64), width: f64, trial: &Trial) -> Scene {
     }
 }
 
+/// A closed tank between two corners \[m], with nothing in it.
+pub fn closed_tank(trial: &Trial, low: [f64; 2], high: [f64; 2]) -> Scene {
+    Scene {
+        spacing: SPACING,
+        solver: trial.solver.clone(),
+        legacy: trial.legacy.clone(),
+        tank: vec![Tank { open: Vec::new(), ..Tank::new(low, high) }],
+        ..Scene::default()
+    }
+}
+
 /// A floor with this friction.
 pub fn floor(friction: f64) -> HalfPlane {
     HalfPlane { friction: Some(friction), ..HalfPlane::new([0.0, 0.0], [0.0, 1.0]) }

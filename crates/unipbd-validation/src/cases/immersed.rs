@@ -2,11 +2,11 @@
 
 use std::f64::consts::PI;
 
-use unipbd_core::scene::{Block, BodyDescription, BodyKind, Disc, Liquid, LiquidSurface, Scene, Tank};
+use unipbd_core::scene::{Block, BodyDescription, BodyKind, Disc, Liquid, LiquidSurface, Scene};
 
 use crate::case::{Band, Case, Figure, Measured, Trial};
 use crate::runner::{Cost, Failure};
-use crate::scenes::{GRAVITY, SPACING, body, pool};
+use crate::scenes::{GRAVITY, SPACING, body, closed_tank, pool};
 
 /// A disc of radius `resolution` spacings that is let go in a ring and in a box full of water.
 pub const ADDED_MASS: Case = Case {
@@ -62,12 +62,8 @@ fn added_mass(trial: &Trial) -> Result<Measured, Failure> {
 fn empty_box(trial: &Trial, half: f64) -> Scene {
     let corner = half * SPACING;
     Scene {
-        spacing: SPACING,
-        solver: trial.solver.clone(),
-        legacy: trial.legacy.clone(),
         liquid: vec![Liquid { surface: LiquidSurface::None, ..Liquid::new("water", 1000.0) }],
-        tank: vec![Tank { open: Vec::new(), ..Tank::new([-corner; 2], [corner; 2]) }],
-        ..Scene::default()
+        ..closed_tank(trial, [-corner; 2], [corner; 2])
     }
 }
 

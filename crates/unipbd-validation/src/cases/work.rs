@@ -1,10 +1,10 @@
 //! How the work grows with the number of particles, at an error that stays the same.
 
-use unipbd_core::scene::{Block, Gas, Liquid, Scene, Tank};
+use unipbd_core::scene::{Block, Gas, Liquid, Scene};
 
 use crate::case::{Band, Case, Figure, Measured, Trial};
 use crate::runner::{Cost, Failure};
-use crate::scenes::{SPACING, body};
+use crate::scenes::{SPACING, body, closed_tank};
 
 /// Squares of `resolution` spacings, and of two and four times as many, of what rests.
 pub const WORK: Case = Case {
@@ -17,7 +17,7 @@ pub const WORK: Case = Case {
 };
 
 fn work(trial: &Trial) -> Result<Measured, Failure> {
-    let (mut figures, mut cost) = (Vec::new(), None::<Cost>);
+    let (mut figures, mut cost) = (Vec::new(), Cost::default());
     let kinds: [(fn(&Trial) -> Scene, [&'static str; 3]); 3] = [
         (layers, ["two layers: power of N", "two layers: power of the substeps", "two layers: change of mean C"]),
         (floats, ["floats: power of N", "floats: power of the substeps", "floats: change of mean C"]),
@@ -29,7 +29,7 @@ fn work(trial: &Trial) -> Result<Measured, Failure> {
         for point in points {
             let (point, spent) = point?;
             found.push(point);
-            cost = Some(cost.map_or(spent, |cost| cost.and(spent)));
+            cost = cost.and(spent);
         }
         let (first, last) = (&found[0], &found[found.len() - 1]);
         let power = |of: fn(&Point) -> f64| (of(last) / of(first)).ln() / (last.particles / first.particles).ln();
@@ -37,7 +37,7 @@ fn work(trial: &Trial) -> Result<Measured, Failure> {
         figures.push(Figure::new(names[1], power(|point| point.substeps), Band::OPEN));
         figures.push(Figure::new(names[2], last.compression / first.compression, Band::OPEN));
     }
-    Ok((figures, cost.unwrap_or_default()))
+    Ok((figures, cost))
 }
 
 /// What a size took: per frame.
@@ -68,26 +68,19 @@ fn point(trial: &Trial, times: u32, scene: fn(&Trial) -> Scene) -> Result<(Point
 /// A square tank of this many spacings, closed, without fluids.
 fn tank(trial: &Trial) -> Scene {
     let side = f64::from(trial.resolution) * SPACING;
-    Scene {
-        spacing: SPACING,
-        solver: trial.solver.clone(),
-        legacy: trial.legacy.clone(),
-        tank: vec![Tank { open: Vec::new(), ..Tank::new([0.0; 2], [side; 2]) }],
-        ..Scene::default()
-    }
+    closed_tank(trial, [0.0; 2], [side; 2])
 }
 
 /// A light liquid on one twice as heavy.
 fn layers(trial: &Trial) -> Scene {
     let side = f64::from(trial.resolution) * SPACING;
-    let scene = tank(trial);
     Scene {
         liquid: vec![Liquid::new("lower", 2000.0), Liquid::new("upper", 1000.0)],
         block: vec![
             Block::new("lower", [0.0; 2], [side, 0.5 * side]),
             Block::new("upper", [0.0, 0.5 * side], [side, side]),
         ],
-        ..scene
+        ..tank(trial)
     }
 }
 

@@ -111,10 +111,9 @@ impl Blocks {
         self.slots.len() == contacts && self.bodies as usize == bodies && !self.is_to_be_laid_out()
     }
 
-    /// The block of a contact.
-    #[cfg(test)]
-    pub fn block_of(&self, contact: usize) -> usize {
-        self.slots[contact] as usize / WIDE
+    /// Block and lane of a contact.
+    pub fn slot(&self, contact: usize) -> (usize, usize) {
+        (self.slots[contact] as usize / WIDE, self.slots[contact] as usize % WIDE)
     }
 
     /// Takes the contacts of a search into the lanes, block by block.
@@ -124,13 +123,10 @@ impl Blocks {
                 *anchored = Anchored::default();
             }
             for (lane, &holder) in holders.iter().enumerate().filter(|(_, holder)| **holder != NONE) {
-                let (contact, cache) = (&contacts[holder as usize], &caches[holder as usize]);
-                block.take(lane, contact, masses, sizes);
-                block.load_on(lane, contact, cache, masses.len());
-                anchored.take(lane, contact, cache);
+                let contact = (&contacts[holder as usize], &caches[holder as usize]);
+                take((block, anchored), lane, contact, (masses, sizes));
             }
-            block.rolls = any(&block.rolling_arm);
-            anchored.sum_up(holders);
+            sum_up((block, anchored), holders);
         }
     }
 
@@ -204,6 +200,26 @@ impl Blocks {
             (of.linear.x, of.linear.y, of.angular) = (x, y, angular);
         }
     }
+}
+
+/// Takes a contact of a search into a lane.
+#[inline(always)]
+pub(super) fn take(
+    (block, anchored): (&mut Block, &mut Anchored),
+    lane: usize,
+    (contact, cache): (&Contact, &ContactCache),
+    (masses, sizes): (&[InverseMass], &[f64]),
+) {
+    block.take(lane, contact, masses, sizes);
+    block.load_on(lane, contact, cache, masses.len());
+    anchored.take(lane, contact, cache);
+}
+
+/// Notes what holds for any of the lanes.
+#[inline(always)]
+pub(super) fn sum_up((block, anchored): (&mut Block, &mut Anchored), holders: &[u32; WIDE]) {
+    block.rolls = any(&block.rolling_arm);
+    anchored.sum_up(holders);
 }
 
 impl Order {

@@ -1,8 +1,8 @@
 //! A search that leaves the contacts of a large heap where they are: those that come lie behind all others, until so many
 //! have come and gone that all are ordered anew.
 
-use super::anchored::{Anchored, any};
-use super::blocks::Blocks;
+use super::anchored::Anchored;
+use super::blocks::{Blocks, sum_up, take};
 use super::bounds::NONE;
 use super::contact_block::Block;
 use super::contact_cache::ContactCache;
@@ -62,19 +62,16 @@ impl Blocks {
 
     /// A contact has other places on its bodies.
     fn place(&mut self, number: usize, cache: &ContactCache) {
-        let slot = self.slots[number] as usize;
-        self.anchored[slot / WIDE].place(slot % WIDE, cache);
+        let (at, lane) = self.slot(number);
+        self.anchored[at].place(lane, cache);
     }
 
     /// A contact in the place of one of the same bodies.
     fn renew(&mut self, number: usize, contact: &Contact, cache: &ContactCache, bodies: &Bodies) {
-        let (at, lane) = (self.slots[number] as usize / WIDE, self.slots[number] as usize % WIDE);
+        let (at, lane) = self.slot(number);
         let (block, anchored) = (&mut self.all[at], &mut self.anchored[at]);
-        block.take(lane, contact, &bodies.inverse_masses, &bodies.sizes);
-        block.load_on(lane, contact, cache, bodies.len());
-        block.rolls = any(&block.rolling_arm);
-        anchored.take(lane, contact, cache);
-        anchored.sum_up(&self.holders[at]);
+        take((block, anchored), lane, (contact, cache), (&bodies.inverse_masses, &bodies.sizes));
+        sum_up((block, anchored), &self.holders[at]);
     }
 
     /// A contact behind all that were ordered.
@@ -100,7 +97,7 @@ impl Blocks {
 
     /// Frees the lane of a contact that is over.
     fn remove(&mut self, number: usize, bodies: &Bodies) {
-        let (at, lane) = (self.slots[number] as usize / WIDE, self.slots[number] as usize % WIDE);
+        let (at, lane) = self.slot(number);
         self.holders[at][lane] = NONE;
         self.renew(number, &Contact::over(), &ContactCache::over(), bodies);
         self.slots[number] = NONE;
@@ -109,9 +106,9 @@ impl Blocks {
 
     /// Gives a contact the impulses of its lane.
     pub fn give_impulses(&self, number: usize, contact: &mut Contact) {
-        let slot = self.slots[number] as usize;
         if self.live {
-            self.all[slot / WIDE].give_impulses(slot % WIDE, contact);
+            let (at, lane) = self.slot(number);
+            self.all[at].give_impulses(lane, contact);
         }
     }
 }

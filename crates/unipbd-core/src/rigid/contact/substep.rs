@@ -291,7 +291,7 @@ mod tests {
         let (mut bodies, mut contacts) = heap();
         contacts.begin_substep(&mut bodies, DT, GRAVITY);
         let found = contacts.narrow_phase.contacts();
-        let block_of = |k: usize| contacts.blocks.block_of(k);
+        let block_of = |k: usize| contacts.blocks.slot(k).0;
         for (k, contact) in found.iter().enumerate() {
             for (j, later) in found.iter().enumerate().skip(k + 1) {
                 let sides = [contact.a, contact.b];
