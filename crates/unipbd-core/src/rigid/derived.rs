@@ -81,9 +81,11 @@ impl Derived {
             _ => InverseMass::default(),
         };
         let motion = if spec.kind == BodyKind::Kinematic { spec.motion.clone() } else { Motion::Still };
+        let is_driven = spec.kind == BodyKind::Kinematic && motion.is_still() && spec.velocity != Twist::ZERO;
         let velocity = match spec.kind {
             BodyKind::Dynamic if spec.rotation == Rotation::Locked => Twist { angular: 0.0, ..spec.velocity },
             BodyKind::Dynamic => spec.velocity,
+            _ if is_driven => spec.velocity,
             _ => script_velocity(&motion, spec.pose.angle, moments.centroid),
         };
         let origin = motion.pose(spec.pose, 0.0);
@@ -101,7 +103,7 @@ impl Derived {
                 start: spec.pose,
                 origin: -moments.centroid,
                 motion,
-                driven: None,
+                driven: is_driven.then_some(velocity),
                 gravity_factor,
                 damping,
             },

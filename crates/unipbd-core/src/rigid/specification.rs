@@ -162,7 +162,8 @@ pub struct BodySpec {
     pub shape: Shape,
     /// Where the origin of the outline starts.
     pub pose: Pose,
-    /// Velocity of the centre of mass and angular velocity at the start.
+    /// Velocity of the centre of mass and angular velocity at the start; a kinematic body without a prescribed motion
+    /// keeps both.
     pub velocity: Twist,
     /// Mass or density.
     pub mass: MassSpec,

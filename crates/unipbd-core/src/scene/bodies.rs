@@ -52,10 +52,10 @@ pub struct BodyDescription {
     /// Rotation at the start, counter-clockwise \[degrees].
     #[serde(default)]
     pub angle_deg: f64,
-    /// Velocity of the centre of mass at the start [m/s].
+    /// Velocity of the centre of mass at the start; a kinematic body without `motion` keeps it [m/s].
     #[serde(default)]
     pub velocity: [f64; 2],
-    /// Angular velocity at the start, counter-clockwise [degrees/s].
+    /// Angular velocity at the start, counter-clockwise; a kinematic body without `motion` keeps it [degrees/s].
     #[serde(default)]
     pub spin_deg: f64,
     /// Mass per area [kg/m^2].

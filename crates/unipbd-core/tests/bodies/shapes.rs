@@ -169,3 +169,19 @@ fn scripted_bodies_follow_their_scripts() {
     assert!((rate - swing.velocity(1.0).linear).length() < 1e-4);
     assert_eq!(Motion::Still.velocity(1.0), Twist::ZERO);
 }
+
+#[test]
+fn a_kinematic_body_without_a_script_keeps_its_velocity() {
+    let mut world = World::new(&[]);
+    let velocity = Twist { linear: at(0.5, -0.25), angular: 2.0 };
+    let steady = BodySpec { kind: BodyKind::Kinematic, velocity, ..body(l_shape(), at(1.0, 2.0), Surface::default()) };
+    let id = world.add(steady);
+    let start = world.position(id);
+    world.run(1.0);
+    // The centre of mass goes straight on, wherever the origin of the outline is.
+    let off = (world.position(id) - start - velocity.linear * world.time).length();
+    let turned = world.bodies.pose(id).angle;
+    println!("off a straight way by {off:e} m");
+    assert!(off < 1e-9 && (turned - velocity.angular * world.time).abs() < 1e-9);
+    assert_eq!(world.velocity(id), velocity);
+}

@@ -5,7 +5,15 @@ use super::names::excerpt;
 use crate::scene::{BodyDescription, BodyKind, KeyPath, MOST_SAMPLES, MotionDescription};
 
 pub(super) fn check(checker: &mut Checker, path: &KeyPath, body: &BodyDescription) {
+    let (moves, spins) = (body.velocity != [0.0, 0.0], body.spin_deg != 0.0);
+    let start = (moves || spins).then(|| path.then(if moves { "velocity" } else { "spin_deg" }));
+    if let (BodyKind::Static, Some(start)) = (body.kind, &start) {
+        checker.problem(start.clone(), "a static body never moves", "leave it out, or write kind = \"kinematic\"");
+    }
     let Some(motion) = &body.motion else { return };
+    if let (BodyKind::Kinematic, Some(start)) = (body.kind, start) {
+        checker.problem(start, "the body is moved by `motion`", "leave one of them out");
+    }
     let path = path.then("motion");
     if body.kind != BodyKind::Kinematic {
         let hint = "write kind = \"kinematic\", or use `velocity` and `spin_deg` for a start";
