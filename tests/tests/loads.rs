@@ -2,7 +2,7 @@
 //! where a test compares both.
 
 use unipbd_core::Solver;
-use unipbd_core::scene::Scene;
+use unipbd_core::scene::{Gas, Scene};
 use unipbd_tests::{bars, build, run, scene};
 
 /// Water below a locked block as wide as its tank, without the pressure grid.
@@ -102,4 +102,23 @@ fn hot_gas_rests_below_a_lid() {
         bars.at_most("largest speed [dx/s]", speed / 0.05, 1.0);
         bars.at_most("worst C", worst, 0.01);
     });
+}
+
+#[test]
+fn gas_throws_the_body_that_seals_it_no_higher_than_it_fell() {
+    for (density, mass, bottom) in [(10.0, 3.0, 0.6), (1.2, 30.0, 0.6), (100.0, 3000.0, 0.6), (10.0, 30.0, 0.9)] {
+        let mut sealed = piston(0.6, bottom, mass);
+        sealed.liquid.clear();
+        sealed.gas = vec![Gas { name: "water".into(), density, ..Gas::default() }];
+        let mut solver = build(&sealed, 1);
+        let (gain, _) = gained(&mut solver);
+        bars("block on gas in a shaft, no grid", |bars| {
+            bars.at_most(
+                &format!("energy gained, {mass} kg on {density} kg/m^2, dropped {:.1} m", bottom - 0.6),
+                gain,
+                0.01,
+            );
+            bars.at_most("mean C", solver.diagnostics().density_error_mean, 0.03);
+        });
+    }
 }

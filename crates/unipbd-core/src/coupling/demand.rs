@@ -14,6 +14,8 @@ const TURN: f64 = 0.25;
 const CONVERGENCE: f64 = 125.0;
 /// Substeps of a polygon that touches something: a box on a slope stands up to 99 % of its limit at 2, 98 % at 1.
 const LEAST: f64 = 2.0;
+/// Part of its width with which a body seals a shaft: gas hardly gets past.
+const SEALS: f64 = 0.8;
 /// Height of a stack of bodies that one substep per frame can carry.
 const BODIES_PER_SUBSTEP: f64 = 4.0;
 
@@ -34,6 +36,34 @@ impl RigidBodies {
             motion: self.motion(frame),
             support: stacked.max(self.convergence(frame, gravity.length())).max(self.least()),
         }
+    }
+
+    /// Whether a body is moved by what pushes it.
+    pub(crate) fn has_dynamic(&self) -> bool {
+        (0..self.bodies.len()).any(|id| self.bodies.is_dynamic(id))
+    }
+
+    /// Whether a body may seal a shaft of this width \[m] across a direction.
+    pub(crate) fn spans(&self, across: Vector64, width: f64) -> bool {
+        let bodies = &self.bodies;
+        let extent = |id: usize| {
+            let (pose, core) = (&bodies.poses[id], &bodies.cores[id]);
+            let along = |corner: &Vector64| (pose.apply(*corner) - pose.position).dot(across);
+            let ends = bodies.views()[id]
+                .outline
+                .iter()
+                .map(along)
+                .fold((0.0_f64, 0.0_f64), |(low, high), at| (low.min(at), high.max(at)));
+            (ends.1 - ends.0).max(2.0 * core.radius)
+        };
+        (0..bodies.len()).any(|id| bodies.is_dynamic(id) && extent(id) >= SEALS * width)
+    }
+
+    /// Weight of all bodies that something moves \[N].
+    pub(crate) fn weight(&self, gravity: f64) -> f64 {
+        let bodies = &self.bodies;
+        let masses = (0..bodies.len()).filter(|&id| bodies.is_dynamic(id)).map(|id| bodies.views()[id].mass);
+        gravity * masses.sum::<f64>()
     }
 
     /// Largest pressure by which a body may press on a fluid: that of its fall and of its weight \[Pa].

@@ -73,9 +73,10 @@ impl SubstepLaw {
         SubstepLaw { spacing, target, courant, alone, free, confines_gas, tied, compressibility, tension }
     }
 
-    /// Whether the compression of its particles is what carries a fluid that can expand: then it stores energy.
-    pub fn stores_energy(&self) -> bool {
-        self.alone && self.free
+    /// Whether the compression of its particles is what carries a fluid that can expand, for it has a surface or bodies
+    /// that give way: then it stores energy.
+    pub fn stores_energy(&self, loaded: bool) -> bool {
+        self.alone && (self.free || loaded)
     }
 
     /// Largest pressure over density that surface tension may bring about [m^2/s^2].

@@ -25,7 +25,9 @@ pub struct Demand {
     pub body_motion: f64,
     /// Substeps that rigid bodies need by the height of stacks and their mass ratios.
     pub support: f64,
-    /// Energy of the liquids over that which their compression stores.
+    /// Whether bodies may press on the fluids.
+    pub loaded: bool,
+    /// Energy of the fluids over that which their compression stores.
     pub over_stored: f64,
 }
 
@@ -37,6 +39,7 @@ impl Default for Demand {
             acceleration: 0.0,
             body_motion: 0.0,
             support: 0.0,
+            loaded: false,
             over_stored: f64::INFINITY,
         }
     }
@@ -105,7 +108,7 @@ impl SubstepRule {
         }
     }
 
-    /// The fraction of its full stiffness that a liquid with a surface has in a frame of `substeps` substeps. The frame
+    /// The fraction of its full stiffness that a liquid with a surface, or gas that bodies press on, has in a frame of `substeps` substeps. The frame
     /// before had `last` substeps and the fraction `before`.
     ///
     /// Stiffness is proportional to 1/dt^2. If it jumped with the number of substeps, a compressed liquid would release
@@ -113,7 +116,7 @@ impl SubstepRule {
     /// grows frame by frame. The target compression is still met, unless most of the energy is stored: then it grows by
     /// what adds little energy, and a compression above the target is warned of.
     pub fn stiffness_after(&self, last: u32, before: f64, frame: f64, demand: Demand, substeps: u32) -> f64 {
-        if self.is_fixed() || last == 0 || !self.law.stores_energy() {
+        if self.is_fixed() || last == 0 || !self.law.stores_energy(demand.loaded) {
             return 1.0;
         }
         let square = |part: f64| part * part;

@@ -24,7 +24,7 @@ impl World {
     pub(in crate::step) fn choose_substeps(&mut self) -> u32 {
         let liquids = self.survey(self.down(), is_liquid);
         let fluids = if self.has_gas() { self.survey(self.down(), Phase::is_fluid) } else { liquids };
-        let demand = self.demand(liquids);
+        let demand = self.demand(liquids, fluids);
         self.clock.pressure_limit = self.pressure_limit_of(fluids);
         let (rule, last, frame) = (self.parts.substeps, self.clock.substeps, self.parts.frame_time);
         let choice = self.within_budget(rule.choose_after(last, frame, demand));
@@ -53,8 +53,11 @@ impl World {
     }
 
     /// The quantities that determine the number of substeps.
-    fn demand(&self, liquids: FluidStatistics) -> Demand {
+    fn demand(&self, liquids: FluidStatistics, fluids: FluidStatistics) -> Demand {
         let parts = &self.parts;
+        // Gas hardly carries its own weight, but bodies may lie on it.
+        let loaded = parts.rigid.as_ref().is_some_and(RigidBodies::has_dynamic);
+        let carrying = if loaded { fluids } else { liquids };
         let emitted = parts.emitters.as_ref().map_or(0.0, |emitters| emitters.speed_max(self.clock.time));
         let acceleration = self.pull().length() + self.clock.push.spread;
         let moving = match self.clock.step {
@@ -65,26 +68,28 @@ impl World {
         let bodies = parts.rigid.as_ref().filter(|_| !parts.substeps.is_fixed()).map(of_bodies).unwrap_or_default();
         // Pressure from the relative motion within the liquids.
         let dynamic = self.square_of_relative_speed(liquids, is_liquid);
-        let known = if self.clock.step == 0 { 0.0 } else { liquids.pressure(self.clock.dt) };
+        let known = if self.clock.step == 0 { 0.0 } else { carrying.pressure(self.clock.dt) };
         let of_depth = self.depth_pressure(liquids);
-        let pressure = of_depth.max(self.buoyancy_pressure()).max(dynamic).max(known / UNEXPECTED);
+        let carried = if loaded { self.sealed_pressure() } else { 0.0 };
+        let pressure = of_depth.max(self.buoyancy_pressure()).max(dynamic).max(known / UNEXPECTED).max(carried);
         Demand {
             speed: moving.max(emitted),
             pressure,
             acceleration,
             body_motion: bodies.motion,
             support: bodies.support,
-            over_stored: self.energy_over_stored(liquids, of_depth),
+            loaded,
+            over_stored: self.energy_over_stored(carrying, of_depth),
         }
     }
 
-    /// Energy of motion, and of the height of liquids whose depth brings about this pressure over density [m^2/s^2], over
+    /// Energy of motion, and of the height of fluids whose depth brings about this pressure over density [m^2/s^2], over
     /// the energy that their compression stores.
-    fn energy_over_stored(&self, liquids: FluidStatistics, of_depth: f64) -> f64 {
+    fn energy_over_stored(&self, fluids: FluidStatistics, of_depth: f64) -> f64 {
         if self.clock.step == 0 {
             return f64::INFINITY;
         }
-        let [motion, stored] = liquids.energies(self.clock.dt);
+        let [motion, stored] = fluids.energies(self.clock.dt);
         if stored > 0.0 { (motion + 0.5 * of_depth) / stored } else { f64::INFINITY }
     }
 
@@ -171,6 +176,23 @@ impl World {
         if height.is_finite() { pull.length() * height } else { 0.0 }
     }
 
+    /// Pressure over density of gas that a body seals, where particles alone carry it: the weight of all bodies over the
+    /// width of the gas [m^2/s^2].
+    fn sealed_pressure(&self) -> f64 {
+        let parts = &self.parts;
+        let Some(rigid) = parts.rigid.as_ref().filter(|_| parts.pressure_grid.is_none() && self.has_gas()) else {
+            return 0.0;
+        };
+        let (down, is_gas) = (self.down(), |phase| phase == Phase::Gas);
+        let width = self.survey(down.perp(), is_gas).depth();
+        let gases = parts.materials.iter().filter(|material| is_gas(material.phase));
+        let lightest = gases.map(|gas| gas.density).fold(f64::INFINITY, f64::min);
+        match rigid.spans(wide(down.perp()), width) {
+            true => rigid.weight(self.pull().length()) / (width * lightest),
+            false => 0.0,
+        }
+    }
+
     /// The same with hooks: what they have in common presses along the whole depth, the rest from all sides.
     fn pushed_pressure(&self, of: FluidStatistics) -> f64 {
         let half = 0.5 * self.extent().into_iter().fold(0.0, f64::max);
@@ -197,13 +219,13 @@ impl World {
         PRESSURE_MARGIN * expected + least * least
     }
 
-    /// Largest pressure of bodies over the density of the lightest liquid that carries them, where particles alone do
+    /// Largest pressure of bodies over the density of the lightest fluid that carries them, where particles alone do
     /// [m^2/s^2].
     fn body_pressure(&self) -> f64 {
         let parts = &self.parts;
         let Some(rigid) = parts.rigid.as_ref().filter(|_| parts.pressure_grid.is_none()) else { return 0.0 };
-        let liquids = parts.materials.iter().filter(|material| material.phase == Phase::Liquid);
-        let lightest = liquids.map(|liquid| liquid.density).fold(f64::INFINITY, f64::min);
+        let fluids = parts.materials.iter().filter(|material| material.phase.is_fluid());
+        let lightest = fluids.map(|fluid| fluid.density).fold(f64::INFINITY, f64::min);
         if lightest.is_finite() { rigid.pressure(f64::from(parts.gravity.length())) / lightest } else { 0.0 }
     }
 
