@@ -30,6 +30,7 @@ use crate::neighbors::Neighbors;
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
 use crate::passes::Pairs;
+use crate::rigid::{Bodies, Mobilities};
 use crate::rows::RowIndex;
 use crate::walls::{Outlines, Walls};
 
@@ -46,6 +47,8 @@ impl Needs {
     pub const ROWS: Needs = Needs(2);
     /// A call of [`ConstraintGroup::finish_velocities`].
     pub const VELOCITY_PASS: Needs = Needs(4);
+    /// The bodies that viscous fluids do not slip along.
+    pub const WITHOUT_SLIP: Needs = Needs(8);
 
     /// Whether all of `other` is needed.
     pub const fn contains(self, other: Needs) -> bool {
@@ -79,14 +82,23 @@ pub struct Substep<'a> {
     pub rows: &'a RowIndex,
     /// Neighbours of the dense rows; built only where a group [needs](Needs::NEIGHBORS) it.
     pub neighbors: &'a Neighbors,
-    /// Ids of the samples of bodies that viscous fluids do not slip along: from the first to one past the last.
-    pub without_slip: &'a [(u32, u32)],
+    /// Bodies that viscous fluids do not slip along; listed only where a group [needs](Needs::WITHOUT_SLIP) them.
+    pub without_slip: WithoutSlip<'a>,
     /// Static walls.
     pub walls: &'a Walls,
     /// Outlines of bodies that are walls too.
     pub outlines: &'a Outlines,
     /// How to spread work over threads.
     pub parallelism: Parallelism,
+}
+
+/// Bodies that viscous fluids do not slip along.
+#[derive(Clone, Copy)]
+pub struct WithoutSlip<'a> {
+    /// Their outlines, where they are predicted to be.
+    pub(crate) outlines: &'a Outlines,
+    /// All bodies, and how they answer to loads.
+    pub(crate) bodies: Option<(&'a Bodies, &'a Mobilities)>,
 }
 
 impl<'a> Substep<'a> {

@@ -38,7 +38,6 @@ pub(super) enum Meeting {
 
 /// Whether a body is a wall to fluids by its outline, where the scene lets it.
 pub(crate) fn is_outlined(body: &Body, spacing: f64) -> bool {
-    // Samples are what a viscous fluid sticks to.
     let met = !body.samples.is_empty() && !body.surface.no_slip;
     body.kind != BodyKind::Dynamic && met && shape(body).thickness() >= THIN * spacing
 }
@@ -90,6 +89,22 @@ impl RigidBodies {
         }));
         self.place_outlines(outlines);
         outlines.find_touching();
+    }
+
+    /// Takes the outlines that viscous fluids do not slip along.
+    pub(crate) fn set_without_slip(&self, outlines: &mut Outlines) {
+        let sticks = |body: &u32| {
+            let spec = &self.bodies.specifications()[*body as usize];
+            let met = matches!(self.met[*body as usize], Meeting::Samples);
+            met && spec.surface.no_slip && spec.matched.is_none()
+        };
+        outlines.set((0..self.bodies.len() as u32).filter(sticks).map(|body| OutlineSpec {
+            body,
+            shape: shape(&self.views()[body as usize]),
+            still: self.views()[body as usize].kind == BodyKind::Static,
+            fixed: false,
+        }));
+        self.place_outlines(outlines);
     }
 
     /// Puts outlines where their bodies are, and where they are predicted to be.
