@@ -10,6 +10,7 @@ mod saved;
 mod soft_bodies;
 mod ties;
 
+use crate::constraints::LightBody;
 use crate::math::{Real, Vector, Vector64, vector, wide};
 use crate::particles::Particles;
 use crate::rigid::contact::Contacts;
@@ -56,6 +57,11 @@ pub struct RigidBodies {
     carried: Vec<Carried>,
     /// Bodies that are particles, drawn back to their shapes.
     matched: Vec<soft_bodies::Matched>,
+    /// Mass per area of the heaviest fluid, beside which bodies are light [kg/m^2]; 0 where there is none.
+    #[serde(skip)]
+    heaviest: f64,
+    #[serde(skip)]
+    light: Vec<LightBody>,
     /// How bodies answer to the pressure of a grid.
     #[serde(skip)]
     mobilities: Mobilities,
@@ -112,6 +118,8 @@ impl RigidBodies {
             tied: Vec::new(),
             carried: Vec::new(),
             matched: Vec::new(),
+            heaviest: 0.0,
+            light: Vec::new(),
             mobilities: Mobilities::default(),
         };
         rigid.list_matched(spacing);

@@ -118,7 +118,7 @@ impl World {
         rigid.contacts.run_on(parts.parallelism);
         rigid.carry_anchors(&parts.particles, &self.rows);
         rigid.predict(self.clock.dt, self.clock.time, wide(parts.gravity));
-        if parts.pressure_grid.is_some() || !parts.without_slip.is_empty() {
+        if parts.pressure_grid.is_some() || !parts.without_slip.is_empty() || rigid.any_light() {
             rigid.find_mobilities();
         }
         rigid.iterate_contacts();
@@ -128,6 +128,7 @@ impl World {
         let parts = &mut self.parts;
         let Some(rigid) = &mut parts.rigid else { return };
         rigid.place_samples(&mut parts.particles, &self.rows);
+        rigid.find_light();
         rigid.place_outlines(&mut parts.outlines);
         rigid.place_outlines(&mut parts.without_slip);
     }

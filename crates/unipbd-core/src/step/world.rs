@@ -227,7 +227,10 @@ impl World {
 
     /// Takes the outlines of the bodies that there are; whether a group needs those without slip.
     fn set_outlines(&mut self, without_slip: bool) {
-        let Parts { rigid, outlines, without_slip: sticking, .. } = &mut self.parts;
+        let Parts { rigid, outlines, without_slip: sticking, materials, .. } = &mut self.parts;
+        let fluids = materials.iter().filter(|material| material.phase.is_fluid());
+        let heaviest = fluids.map(|material| material.density).fold(0.0, f64::max);
+        rigid.iter_mut().for_each(|rigid| rigid.set_heaviest(heaviest));
         match rigid {
             Some(rigid) => rigid.set_outlines(outlines),
             None => outlines.set(std::iter::empty()),
@@ -374,6 +377,7 @@ impl World {
             particles: &parts.particles,
             rows,
             neighbors: &parts.neighbors,
+            light: parts.rigid.as_ref().map_or(&[], RigidBodies::light),
             without_slip: WithoutSlip {
                 outlines: &parts.without_slip,
                 bodies: parts.rigid.as_ref().map(RigidBodies::movers),
