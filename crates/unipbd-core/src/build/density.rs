@@ -12,6 +12,8 @@ pub(super) struct Built {
     pub group: Box<dyn ConstraintGroup>,
     /// Room for the outlines of bodies that are walls of the fluid.
     pub outlines: Outlines,
+    /// The same of bodies that viscous fluids do not slip along.
+    pub without_slip: Outlines,
     /// Pressure over density per multiplier, inverse mass and squared substep, on the lattice at rest.
     pub pressure_scale: f64,
 }
@@ -42,6 +44,6 @@ fn built<K: Shape>(
     let settings = DensitySettings::new(scene, kernel);
     let pressure_scale = f64::from(settings.volume) * settings.moment;
     let upheld = settings.upheld.then_some(scene.spacing);
-    let outlines = Outlines::new(Kernel::new(scene.solver.kernel_radius * scene.spacing), upheld, periodic);
-    Built { group: group(settings), outlines, pressure_scale }
+    let room = |upheld| Outlines::new(Kernel::new(scene.solver.kernel_radius * scene.spacing), upheld, periodic);
+    Built { group: group(settings), outlines: room(upheld), without_slip: room(None), pressure_scale }
 }

@@ -109,6 +109,7 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
         forces: fluids::forces(scene),
         walls: Walls::new(scene),
         outlines: density.outlines,
+        without_slip: density.without_slip,
         neighbors: Neighbors::new(periodic, reach, real(least_skin), cost),
         search_positions: fluids::search_positions(scene),
         pressure_grid: fluids::pressure_grid(scene, periodic),

@@ -13,6 +13,8 @@ pub(crate) struct CorrectionParts {
     pub walls: usize,
     /// Number of outlines of bodies.
     pub outlines: usize,
+    /// Number of those that viscous fluids do not slip along.
+    pub without_slip: usize,
 }
 
 /// What a fluid does to a body through its outline.
@@ -41,6 +43,7 @@ pub struct Corrections {
     load: Vec<Vector>,
     wall_load: Vec<Vector64>,
     outline_load: Vec<OutlineLoad>,
+    shear_load: Vec<OutlineLoad>,
 }
 
 impl Corrections {
@@ -106,12 +109,23 @@ impl Corrections {
         &mut self.outline_load
     }
 
+    /// Loads by shear of the bodies that viscous fluids do not slip along.
+    pub(crate) fn shear_loads(&self) -> &[OutlineLoad] {
+        &self.shear_load
+    }
+
+    /// The same, to be written.
+    pub(crate) fn shear_loads_mut(&mut self) -> &mut [OutlineLoad] {
+        &mut self.shear_load
+    }
+
     pub(crate) fn memory_bytes(&self) -> usize {
         held(&self.displacement)
             + held(&self.shift)
             + held(&self.load)
             + held(&self.wall_load)
             + held(&self.outline_load)
+            + held(&self.shear_load)
     }
 
     /// Adds a displacement to one row.
@@ -135,5 +149,7 @@ impl Corrections {
         self.wall_load.resize(self.parts.walls, Vector64::ZERO);
         self.outline_load.clear();
         self.outline_load.resize(self.parts.outlines, OutlineLoad::default());
+        self.shear_load.clear();
+        self.shear_load.resize(self.parts.without_slip, OutlineLoad::default());
     }
 }

@@ -25,11 +25,12 @@ pub use shape_matching::{Member, ShapeMatching};
 pub use surface_tension::SurfaceTension;
 pub use viscosity::Viscosity;
 
-use crate::math::{Real, Vector};
+use crate::math::{Real, Vector, Vector64};
 use crate::neighbors::Neighbors;
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
 use crate::passes::Pairs;
+use crate::rigid::{Bodies, Mobilities, Mobility};
 use crate::rows::RowIndex;
 use crate::walls::{Outlines, Walls};
 
@@ -46,6 +47,8 @@ impl Needs {
     pub const ROWS: Needs = Needs(2);
     /// A call of [`ConstraintGroup::finish_velocities`].
     pub const VELOCITY_PASS: Needs = Needs(4);
+    /// The bodies that viscous fluids do not slip along.
+    pub const WITHOUT_SLIP: Needs = Needs(8);
 
     /// Whether all of `other` is needed.
     pub const fn contains(self, other: Needs) -> bool {
@@ -79,14 +82,36 @@ pub struct Substep<'a> {
     pub rows: &'a RowIndex,
     /// Neighbours of the dense rows; built only where a group [needs](Needs::NEIGHBORS) it.
     pub neighbors: &'a Neighbors,
-    /// Ids of the samples of bodies that viscous fluids do not slip along: from the first to one past the last.
-    pub without_slip: &'a [(u32, u32)],
+    /// Bodies that viscous fluids do not slip along; listed only where a group [needs](Needs::WITHOUT_SLIP) them.
+    pub without_slip: WithoutSlip<'a>,
+    /// Bodies that are light beside the fluids they meet.
+    pub light: &'a [LightBody],
     /// Static walls.
     pub walls: &'a Walls,
     /// Outlines of bodies that are walls too.
     pub outlines: &'a Outlines,
     /// How to spread work over threads.
     pub parallelism: Parallelism,
+}
+
+/// A body that is light beside the fluid it displaces.
+#[derive(Clone, Copy, Debug)]
+pub struct LightBody {
+    /// Ids of its samples, from the first to one past the last.
+    pub(crate) samples: (u32, u32),
+    /// Its centre of mass, where it is predicted to be \[m].
+    pub(crate) centre: Vector64,
+    /// How it answers to a load.
+    pub(crate) mobility: Mobility,
+}
+
+/// Bodies that viscous fluids do not slip along.
+#[derive(Clone, Copy)]
+pub struct WithoutSlip<'a> {
+    /// Their outlines, where they are predicted to be.
+    pub(crate) outlines: &'a Outlines,
+    /// All bodies, and how they answer to loads.
+    pub(crate) bodies: Option<(&'a Bodies, &'a Mobilities)>,
 }
 
 impl<'a> Substep<'a> {

@@ -10,6 +10,7 @@ mod saved;
 mod soft_bodies;
 mod ties;
 
+use crate::constraints::LightBody;
 use crate::math::{Real, Vector, Vector64, vector, wide};
 use crate::particles::Particles;
 use crate::rigid::contact::Contacts;
@@ -31,9 +32,6 @@ pub struct RigidBodies {
     pub(crate) contacts: Contacts,
     /// Ids of the samples of each body, from the first to one past the last.
     sample_ids: Vec<(u32, u32)>,
-    /// The same of the bodies that viscous fluids do not slip along.
-    #[serde(skip)]
-    without_slip: Vec<(u32, u32)>,
     /// Whether a fluid, or particles, meet bodies through their samples.
     seen: bool,
     /// Whether bodies that the fluid does not move are walls to it, and have no samples.
@@ -59,6 +57,11 @@ pub struct RigidBodies {
     carried: Vec<Carried>,
     /// Bodies that are particles, drawn back to their shapes.
     matched: Vec<soft_bodies::Matched>,
+    /// Mass per area of the heaviest fluid, beside which bodies are light [kg/m^2]; 0 where there is none.
+    #[serde(skip)]
+    heaviest: f64,
+    #[serde(skip)]
+    light: Vec<LightBody>,
     /// How bodies answer to the pressure of a grid.
     #[serde(skip)]
     mobilities: Mobilities,
@@ -104,7 +107,6 @@ impl RigidBodies {
             bodies,
             contacts,
             sample_ids,
-            without_slip: Vec::new(),
             seen,
             outlines,
             met: Vec::new(),
@@ -116,6 +118,8 @@ impl RigidBodies {
             tied: Vec::new(),
             carried: Vec::new(),
             matched: Vec::new(),
+            heaviest: 0.0,
+            light: Vec::new(),
             mobilities: Mobilities::default(),
         };
         rigid.list_matched(spacing);
@@ -141,25 +145,14 @@ impl RigidBodies {
 
     /// Finds contacts, predicts the bodies and applies the impulses kept from the last substep.
     pub(crate) fn predict(&mut self, dt: f64, time: f64, gravity: Vector64) {
-        self.find_without_slip();
         self.contacts.begin_substep(&mut self.bodies, dt, gravity);
         self.bodies.predict(dt, time, gravity);
         self.contacts.warm_start(&mut self.bodies);
     }
 
-    /// Ids of the samples of bodies that viscous fluids do not slip along.
-    pub(crate) fn without_slip(&self) -> &[(u32, u32)] {
-        &self.without_slip
-    }
-
-    fn find_without_slip(&mut self) {
-        if !self.seen {
-            return;
-        }
-        let specs = self.bodies.specifications().iter().zip(&self.sample_ids);
-        let held = specs.filter(|(spec, _)| spec.surface.no_slip && spec.matched.is_none());
-        self.without_slip.clear();
-        self.without_slip.extend(held.map(|(_, ids)| *ids));
+    /// The bodies and how they answer to loads.
+    pub(crate) fn movers(&self) -> (&Bodies, &Mobilities) {
+        (&self.bodies, &self.mobilities)
     }
 
     /// One iteration of all contacts and joints.

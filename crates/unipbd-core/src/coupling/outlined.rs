@@ -2,7 +2,7 @@
 //! They have no samples among the particles.
 
 use super::RigidBodies;
-use crate::constraints::OutlineLoad;
+use crate::constraints::{LightBody, OutlineLoad};
 use crate::math::{Vector, direction, vector};
 use crate::particles::Particles;
 use crate::rigid::{Body, BodyKind, Pose};
@@ -12,6 +12,8 @@ use crate::walls::{OutlineSpec, Outlines, Place};
 
 /// Bodies thinner than this, in spacings, keep samples: they cover too little of a kernel to hold a fluid.
 const THIN: f64 = 1.0;
+/// A body of less than this part of the mass of the fluid that it displaces is light.
+const LIGHT: f64 = 0.2;
 
 /// How fluids and particles meet the bodies of a scene.
 #[derive(Clone, Copy, Debug)]
@@ -38,7 +40,6 @@ pub(super) enum Meeting {
 
 /// Whether a body is a wall to fluids by its outline, where the scene lets it.
 pub(crate) fn is_outlined(body: &Body, spacing: f64) -> bool {
-    // Samples are what a viscous fluid sticks to.
     let met = !body.samples.is_empty() && !body.surface.no_slip;
     body.kind != BodyKind::Dynamic && met && shape(body).thickness() >= THIN * spacing
 }
@@ -90,6 +91,59 @@ impl RigidBodies {
         }));
         self.place_outlines(outlines);
         outlines.find_touching();
+    }
+
+    /// Takes the outlines that viscous fluids do not slip along.
+    pub(crate) fn set_without_slip(&self, outlines: &mut Outlines) {
+        let sticks = |body: &u32| {
+            let spec = &self.bodies.specifications()[*body as usize];
+            let met = matches!(self.met[*body as usize], Meeting::Samples);
+            met && spec.surface.no_slip && spec.matched.is_none()
+        };
+        outlines.set((0..self.bodies.len() as u32).filter(sticks).map(|body| OutlineSpec {
+            body,
+            shape: shape(&self.views()[body as usize]),
+            still: self.views()[body as usize].kind == BodyKind::Static,
+            fixed: false,
+        }));
+        self.place_outlines(outlines);
+    }
+
+    /// Takes the density of the heaviest fluid.
+    pub(crate) fn set_heaviest(&mut self, density: f64) {
+        self.heaviest = density;
+    }
+
+    /// Whether a body is light beside the fluids.
+    fn is_light(&self, body: u32) -> bool {
+        let view = &self.views()[body as usize];
+        let displaced = self.heaviest * view.sample_area * view.samples.len() as f64;
+        let met = self.met[body as usize] == Meeting::Samples && self.bodies.elasticity(body as usize).is_none();
+        met && self.bodies.is_active(body as usize)
+            && self.bodies.is_dynamic(body as usize)
+            && view.mass < LIGHT * displaced
+    }
+
+    /// Whether any body is light beside the fluids.
+    pub(crate) fn any_light(&self) -> bool {
+        self.heaviest > 0.0 && (0..self.bodies.len() as u32).any(|body| self.is_light(body))
+    }
+
+    /// Lists the light bodies where they are predicted to be.
+    pub(crate) fn find_light(&mut self) {
+        let mut light = std::mem::take(&mut self.light);
+        light.clear();
+        light.extend((0..self.bodies.len() as u32).filter(|&body| self.is_light(body)).map(|body| LightBody {
+            samples: self.sample_ids[body as usize],
+            centre: self.bodies.predicted_pose(body).position,
+            mobility: self.mobilities.of(body),
+        }));
+        self.light = light;
+    }
+
+    /// The light bodies of this substep.
+    pub(crate) fn light(&self) -> &[LightBody] {
+        &self.light
     }
 
     /// Puts outlines where their bodies are, and where they are predicted to be.

@@ -112,6 +112,12 @@ impl Components {
         self.runs.get(number).is_some_and(|run| run.start as usize <= cell && self.airy[number])
     }
 
+    /// Whether all fluid is one part.
+    pub fn are_one(&mut self) -> bool {
+        let Components { runs, joined, .. } = self;
+        (1..runs.len() as u32).all(|run| joined.root(run) == joined.root(0))
+    }
+
     /// The closed parts.
     pub fn closed(&self) -> impl Iterator<Item = Part<'_>> {
         self.closed.chunk_by(|a, b| a.0 == b.0).map(Part)

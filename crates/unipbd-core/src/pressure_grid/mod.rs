@@ -16,6 +16,7 @@ mod images;
 mod lattice;
 mod level;
 mod mixture;
+mod momentum;
 mod multigrid;
 mod openings;
 mod readings;
@@ -26,7 +27,7 @@ mod system;
 mod transfer;
 
 use crate::bytes::held;
-use crate::math::{Real, Vector, Vector64, wide};
+use crate::math::{Real, Vector, Vector64, vector, wide};
 use crate::parallel::Parallelism;
 use crate::particles::{Particles, displaced};
 use crate::periodic::{Periodic, PeriodicAxis};
@@ -38,6 +39,7 @@ use couplings::Couplings;
 use lattice::Lattice;
 use level::Level;
 pub(crate) use mixture::Mixture;
+use momentum::{momentum, slow_down};
 pub(crate) use multigrid::Accuracy;
 use multigrid::{Multigrid, Problem};
 use openings::Openings;
@@ -144,9 +146,17 @@ impl PressureGrid {
         if self.openings.boundless && self.system.is_full(&self.lattice) {
             self.system.keep_momentum(&self.lattice, self.transfer.fields());
         }
+        let alone = walls.is_empty() && outlines.is_empty() && self.components.are_one();
+        let free = |of: &Immersed<'_>| of.mobilities.are_free(of.bodies.inverse_masses());
+        let kept = (alone && bodies.as_ref().is_none_or(free)).then(|| momentum(particles, parallelism));
         self.push(particles, dt as Real, parallelism);
+        let mut pushed = Vector64::ZERO;
         if let Some(immersed) = bodies {
-            self.push_bodies(immersed.bodies, particles.asleep() > 0, dt);
+            pushed = self.push_bodies(immersed.bodies, particles.asleep() > 0, dt);
+        }
+        if let Some((before, mass)) = kept.filter(|(_, mass)| *mass > 0.0) {
+            let gained = momentum(particles, parallelism).0 + pushed - before;
+            slow_down(particles, vector(gained / mass), dt as Real, parallelism);
         }
         self.system.set_constants(&self.lattice, &self.openings, &self.components);
         self.system.join_solutions(&self.lattice);
@@ -206,8 +216,9 @@ impl PressureGrid {
     }
 
     /// Loads the bodies with the pressure of the grid, and moves them with the fluid around them. Bodies that sleep with
-    /// their fluid keep their load.
-    fn push_bodies(&mut self, bodies: &mut Bodies, with_fluid: bool, dt: f64) {
+    /// their fluid keep their load. Returns the momentum that they gained [kg m/s].
+    fn push_bodies(&mut self, bodies: &mut Bodies, with_fluid: bool, dt: f64) -> Vector64 {
+        let mut gained = Vector64::ZERO;
         let (solids, system, stride) = (&self.solids, &self.system, self.lattice.stride());
         let cell_mass = f64::from(self.cell_mass());
         let farthest = f64::from(FARTHEST * self.spacing);
@@ -216,10 +227,12 @@ impl PressureGrid {
             if solid.covers() && !sleeps {
                 let [x, y, turn] = solids.load(solid, &system.pressure, stride).map(|load| load * cell_mass / dt);
                 bodies.load(solid.body, Vector64::new(x, y), turn, dt);
+                gained += Vector64::new(x, y) * dt;
             }
             let Twist { linear, angular } = twist(solids.change(solid, &system.potential, stride));
             bodies.shift(solid.body, linear.clamp_length_max(farthest), angular);
         }
+        gained
     }
 
     /// Takes the changes of the faces to the particles.

@@ -150,6 +150,11 @@ impl Bodies {
         self.displacements[id as usize].at(arm)
     }
 
+    /// Predicted displacement in the running substep \[m], \[rad].
+    pub(crate) fn predicted_displacement(&self, id: u32) -> Twist {
+        self.displacements[id as usize]
+    }
+
     /// Lattice samples in body coordinates \[m].
     pub fn samples(&self, id: u32) -> &[Vector64] {
         &self.views[id as usize].samples

@@ -86,6 +86,16 @@ impl Mobilities {
         self.rows = rows;
     }
 
+    /// Whether contacts and joints hold no body, each other's neither, and all can move.
+    pub fn are_free(&self, free: &[InverseMass]) -> bool {
+        let is_free = |(body, &inverse_mass): (u32, &InverseMass)| {
+            let [x, y, turn] = self.of(body);
+            let whole = [x[0], y[1], turn[2]] == diagonal(inverse_mass);
+            is_movable(&inverse_mass) && self.companions(body).len() == 1 && whole
+        };
+        (0..).zip(free).all(is_free)
+    }
+
     /// The mobility of a body.
     pub fn of(&self, body: u32) -> Mobility {
         self.between(body, body)

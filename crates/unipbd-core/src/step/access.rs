@@ -203,8 +203,10 @@ impl World {
         let shared = parts.particles.memory_bytes() + parts.neighbors.memory_bytes() + self.rows.memory_bytes();
         let groups = parts.groups.iter().map(|group| group.memory_bytes()).sum::<usize>();
         let effects = parts.effects.iter().map(|effect| effect.memory_bytes()).sum::<usize>();
-        let grid = parts.pressure_grid.as_ref().map_or(0, PressureGrid::memory_bytes) + parts.outlines.memory_bytes();
-        let room = grid + self.corrections.memory_bytes() + self.changes.memory_bytes() + held(&self.velocities);
+        let grid = parts.pressure_grid.as_ref().map_or(0, PressureGrid::memory_bytes);
+        let outlines = parts.outlines.memory_bytes() + parts.without_slip.memory_bytes();
+        let room =
+            grid + outlines + self.corrections.memory_bytes() + self.changes.memory_bytes() + held(&self.velocities);
         shared + groups + effects + room
     }
 }

@@ -118,7 +118,7 @@ impl World {
         rigid.contacts.run_on(parts.parallelism);
         rigid.carry_anchors(&parts.particles, &self.rows);
         rigid.predict(self.clock.dt, self.clock.time, wide(parts.gravity));
-        if parts.pressure_grid.is_some() {
+        if parts.pressure_grid.is_some() || !parts.without_slip.is_empty() || rigid.any_light() {
             rigid.find_mobilities();
         }
         rigid.iterate_contacts();
@@ -128,7 +128,9 @@ impl World {
         let parts = &mut self.parts;
         let Some(rigid) = &mut parts.rigid else { return };
         rigid.place_samples(&mut parts.particles, &self.rows);
+        rigid.find_light();
         rigid.place_outlines(&mut parts.outlines);
+        rigid.place_outlines(&mut parts.without_slip);
     }
 
     fn iterate_contacts(&mut self) {
@@ -250,6 +252,7 @@ impl World {
         let Some(rigid) = &mut parts.rigid else { return };
         rigid.take_loads(self.corrections.loads(), &parts.particles, &self.rows, self.clock.dt);
         rigid.take_outline_loads(self.corrections.outline_loads(), &parts.outlines, self.clock.dt);
+        rigid.take_outline_loads(self.corrections.shear_loads(), &parts.without_slip, self.clock.dt);
     }
 
     fn push_out(&mut self) {

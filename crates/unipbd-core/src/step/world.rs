@@ -12,7 +12,7 @@ use super::substeps::{Choice, SubstepRule};
 use super::timings::Timings;
 use super::watched::{Errors, Watched};
 use super::{FrameReport, SolverError, Stage};
-use crate::constraints::{ConstraintGroup, CorrectionParts, Corrections, Needs, Substep};
+use crate::constraints::{ConstraintGroup, CorrectionParts, Corrections, Needs, Substep, WithoutSlip};
 use crate::coupling::{RigidBodies, Ropes};
 use crate::effects::{Changes, Effect, SmokeAdvection};
 use crate::math::{Real, Vector, Vector64};
@@ -40,6 +40,8 @@ pub(crate) struct Parts {
     pub walls: Walls,
     /// Outlines of bodies that are walls of the fluid.
     pub outlines: Outlines,
+    /// Outlines of bodies that viscous fluids do not slip along.
+    pub without_slip: Outlines,
     pub neighbors: Neighbors,
     pub search_positions: SearchPositions,
     pub pressure_grid: Option<PressureGrid>,
@@ -191,12 +193,9 @@ impl World {
 
     /// Selects the stages: called when the scene is built or its groups change.
     pub fn replan(&mut self) {
-        match &self.parts.rigid {
-            Some(rigid) => rigid.set_outlines(&mut self.parts.outlines),
-            None => self.parts.outlines.set(std::iter::empty()),
-        }
+        let needs = self.parts.groups.iter().map(|group| group.needs()).fold(Needs::NOTHING, |a, b| a | b);
+        self.set_outlines(needs.contains(Needs::WITHOUT_SLIP));
         let parts = &self.parts;
-        let needs = parts.groups.iter().map(|group| group.needs()).fold(Needs::NOTHING, |a, b| a | b);
         let of_effects = parts.effects.iter().map(|effect| effect.needs()).fold(Needs::NOTHING, |a, b| a | b);
         let measured_walls = parts.walls.measured().len();
         self.plan = Plan::new(Features {
@@ -220,9 +219,26 @@ impl World {
             grid_shifts: parts.pressure_grid.is_some(),
             walls: measured_walls,
             outlines: parts.outlines.len(),
+            without_slip: parts.without_slip.len(),
         });
         self.needs_rows = self.emits() || parts.rigid.is_some() || needs.contains(Needs::ROWS);
         self.index_rows();
+    }
+
+    /// Takes the outlines of the bodies that there are; whether a group needs those without slip.
+    fn set_outlines(&mut self, without_slip: bool) {
+        let Parts { rigid, outlines, without_slip: sticking, materials, .. } = &mut self.parts;
+        let fluids = materials.iter().filter(|material| material.phase.is_fluid());
+        let heaviest = fluids.map(|material| material.density).fold(0.0, f64::max);
+        rigid.iter_mut().for_each(|rigid| rigid.set_heaviest(heaviest));
+        match rigid {
+            Some(rigid) => rigid.set_outlines(outlines),
+            None => outlines.set(std::iter::empty()),
+        }
+        match rigid.as_ref().filter(|_| without_slip) {
+            Some(rigid) => rigid.set_without_slip(sticking),
+            None => sticking.set(std::iter::empty()),
+        }
     }
 
     /// Updates the row index, if it is needed.
@@ -361,7 +377,11 @@ impl World {
             particles: &parts.particles,
             rows,
             neighbors: &parts.neighbors,
-            without_slip: parts.rigid.as_ref().map_or(&[], RigidBodies::without_slip),
+            light: parts.rigid.as_ref().map_or(&[], RigidBodies::light),
+            without_slip: WithoutSlip {
+                outlines: &parts.without_slip,
+                bodies: parts.rigid.as_ref().map(RigidBodies::movers),
+            },
             walls: &parts.walls,
             outlines: &parts.outlines,
             parallelism: parts.parallelism,

@@ -8,4 +8,4 @@ mod outlines;
 pub use coverage::Coverage;
 pub use edges::EdgeTables;
 pub use geometry::{Hit, Shear, Walls};
-pub use outlines::{Moment, OutlineSpec, Outlines, Place};
+pub use outlines::{Moment, OutlineShear, OutlineSpec, Outlines, Place};

@@ -5,6 +5,7 @@
 //! resist compression alone, gas dilation too. One relaxed Jacobi step per substep replaces the many
 //! iterations of a large step (Macklin et al. 2019).
 
+mod light;
 mod places;
 mod pressure;
 mod settings;
@@ -100,6 +101,7 @@ impl<K: Shape> Density<K> {
     /// The second half: multipliers and displacements.
     pub(crate) fn end_iteration(&mut self, now: Substep<'_>, out: &mut Corrections) {
         self.step_multipliers(now);
+        self.give_way(now);
         self.shift(now, out);
         self.correct(now, out);
         self.load_bodies(now, out);

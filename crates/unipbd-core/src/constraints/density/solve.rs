@@ -371,7 +371,7 @@ fn at_most(step: Vector, length: Real) -> Vector {
 impl DensityMaterial {
     /// The multiplier after one relaxed step. `limit` is the largest pressure over density times dt^2.
     #[inline(always)]
-    fn multiplier(
+    pub(super) fn multiplier(
         &self,
         old: Real,
         error: Real,

@@ -76,11 +76,19 @@ impl World {
             speed: moving.max(emitted),
             pressure,
             acceleration,
-            body_motion: bodies.motion,
+            body_motion: bodies.motion.max(self.by_shear()),
             support: bodies.support,
             loaded,
             over_stored: self.energy_over_stored(carrying, of_depth),
         }
+    }
+
+    /// Substeps wanted by bodies that a viscous fluid does not slip along.
+    fn by_shear(&self) -> f64 {
+        let parts = &self.parts;
+        let Some(rigid) = parts.rigid.as_ref().filter(|_| parts.pressure_grid.is_some()) else { return 0.0 };
+        let sizes = (0..parts.without_slip.len()).map(|k| rigid.bodies.sizes[parts.without_slip.body(k) as usize]);
+        sizes.map(|size| parts.substeps.by_shear(parts.frame_time, size)).fold(0.0, f64::max)
     }
 
     /// Energy of motion, and of the height of fluids whose depth brings about this pressure over density [m^2/s^2], over

@@ -90,6 +90,17 @@ pub struct Near {
     pub gradient: Vector,
 }
 
+/// How an outline drags a fluid that does not slip along it.
+#[derive(Clone, Copy, Debug)]
+pub struct OutlineShear {
+    /// Number of the outline.
+    pub outline: usize,
+    /// Acceleration per viscosity and difference of velocities [1/m^2].
+    pub rate: Real,
+    /// From the origin of the outline to the point \[m].
+    pub arm: Vector64,
+}
+
 impl Outlines {
     /// None yet, for this kernel and liquids of this spacing, if walls are to [uphold](super::Coverage::upholding) them
     /// \[m].
@@ -165,6 +176,28 @@ impl Outlines {
         for outline in self.met(points, moment) {
             for (k, &x) in points.iter().enumerate() {
                 self.see(outline, x, moment, &mut |near| visit(k, near));
+            }
+        }
+    }
+
+    /// Visits how outlines drag a fluid that does not slip along them, at each of some points at the end of the substep.
+    /// Distances are at least `least`.
+    ///
+    /// As at [walls](super::Walls::shears) the velocity relative to the body goes on linearly behind the surface, by
+    /// which the rate is 2 |grad part|/d.
+    pub fn shears(&self, points: &[Vector], least: Real, mut visit: impl FnMut(usize, OutlineShear)) {
+        let Some(tables) = &self.tables else { return };
+        for outline in self.met(points, Moment::End) {
+            let spot = &self.spots[outline];
+            let axis = spot.places[Moment::End as usize].axis;
+            for (k, &x) in points.iter().enumerate() {
+                spot.each_image(x, Moment::End, self.periodic, |x| {
+                    let Some(Seen { gradient, .. }) = spot.form.seen(x, tables) else { return };
+                    let rate = 2.0 * gradient.length() / spot.form.distance(x).max(least);
+                    if rate > 0.0 {
+                        visit(k, OutlineShear { outline, rate, arm: axis.rotate(wide(x)) });
+                    }
+                });
             }
         }
     }

@@ -1,6 +1,8 @@
 //! Physical viscosity, at any strength.
 
-use super::{ConstraintGroup, Corrections, Needs, Substep};
+mod grips;
+
+use super::{ConstraintGroup, Corrections, Needs, OutlineLoad, Substep};
 use crate::bytes::held;
 use crate::kernel::{Kernel, SlopeAsValue};
 use crate::math::{Real, Vector, real, wide};
@@ -8,12 +10,10 @@ use crate::passes::{self, Records, Weights};
 use crate::phase::Phase;
 use crate::scene::{MaterialRef, Scene};
 use crate::walls::Coverage;
+use grips::Grips;
 
 /// Distances to a wall count as at least this many spacings.
 const LEAST_DISTANCE: f64 = 0.25;
-/// Factor on the shear of samples of bodies, which have the velocity of the body, not one that goes on linearly behind
-/// its surface: that of a plane wall over that of a lattice behind it, for a particle at half a spacing.
-const BODY_SHEAR: Real = 1.9;
 /// One explicit step is taken while the fastest decay of the lattice is at most this part of the stable one:
 /// disordered particles have larger eigenvalues.
 const EXPLICIT: f64 = 0.5;
@@ -24,13 +24,13 @@ const MOST_ITERATIONS: u32 = 1000;
 
 /// Physical viscosity nu: the Laplacian of Brookshaw 1985 and Morris et al. 1997,
 /// rho_i dv_i/dt = sum_j 2 V mu_ij (v_i - v_j) g_ij with grad W = g x and mu_ij the geometric mean of
-/// both, which keeps momentum; walls and bodies without slip add their share.
+/// both, which keeps momentum; walls and bodies without slip add their share ([`Grips`]).
 ///
 /// It acts on the predicted velocities, gravity and others included, so that particles move as they would between
 /// viscosity and load. Short steps are explicit; long ones are implicit, v - dt L v = v', by conjugate gradients: L is
 /// symmetric with densities as weights, and every iterate keeps momentum.
 ///
-/// A group, not an effect: walls and bodies feel the opposite force, bodies that of the velocity that they have.
+/// A group, not an effect: walls and bodies feel the opposite force, and bodies answer to it within the step.
 pub struct Viscosity {
     kernel: Kernel,
     coverage: Coverage,
@@ -39,8 +39,6 @@ pub struct Viscosity {
     /// Square root of the dynamic viscosity by material [(kg/s)^1/2].
     root: Vec<Real>,
     density: Vec<Real>,
-    /// What stands for `root` in samples of bodies.
-    of_samples: Real,
     /// Largest rate at which a velocity difference decays [1/s].
     fastest: f64,
     /// Whether this substep's step has been taken: more iterations do not thicken.
@@ -52,6 +50,7 @@ pub struct Viscosity {
     direction: Vec<Vector>,
     sums: Vec<Vector>,
     records: Records,
+    grips: Grips,
 }
 
 /// Velocities of walls as they are, or all zero: of a difference of two fields.
@@ -75,7 +74,6 @@ impl Viscosity {
                 least_distance: real(LEAST_DISTANCE * scene.spacing),
                 density: scene.materials().map(|material| real(material.density().max(1e-30))).collect(),
                 fastest: fastest_decay(scene, &kernel),
-                of_samples: BODY_SHEAR * root.iter().copied().fold(0.0, Real::max),
                 root,
                 applied: false,
                 weights: Vec::new(),
@@ -84,6 +82,7 @@ impl Viscosity {
                 direction: Vec::new(),
                 sums: Vec::new(),
                 records: Records::default(),
+                grips: Grips::default(),
             }
         })
     }
@@ -99,9 +98,8 @@ impl Viscosity {
         self.direction.resize(rows, Vector::ZERO);
         self.residual.resize(particles.listed(), Vector::ZERO);
         self.sums.resize(particles.listed(), Vector::ZERO);
-        let (root, of_samples) = (&self.root, self.of_samples);
+        let root = &self.root;
         now.parallelism.fill(&mut self.weights, |row| match phases[row] {
-            Phase::Rigid if is_without_slip(now, row) => of_samples,
             Phase::Rigid => 0.0,
             _ => root[usize::from(materials[row])],
         });
@@ -109,6 +107,11 @@ impl Viscosity {
         now.parallelism.fill(&mut self.velocity, |row| {
             let predicted = inverse_masses[row] > 0.0 || phases[row] == Phase::Rigid;
             if predicted { particles.displacement[row] * inverse_dt } else { velocities[row] }
+        });
+        let (weights, volume) = (&self.weights, f64::from(self.volume));
+        self.grips.find(now, self.least_distance, |row| {
+            let (root, inverse_mass) = (f64::from(weights[row]), f64::from(inverse_masses[row]));
+            (root > 0.0 && inverse_mass > 0.0).then(|| (root * root * volume, 1.0 / inverse_mass))
         });
     }
 
@@ -142,6 +145,12 @@ impl Viscosity {
                 }
             }
         });
+        if self.grips.any() {
+            match of {
+                Field::Velocity => self.grips.pull_at_start(field, &mut self.sums, f64::from(now.dt)),
+                Field::Direction => self.grips.pull_along(field, &mut self.sums, f64::from(now.dt)),
+            }
+        }
     }
 
     /// One explicit step; no speed rises above the largest one (maximum principle), in crushed heaps neither.
@@ -149,10 +158,11 @@ impl Viscosity {
         self.laplacian(now, Field::Velocity, AtWalls::Velocity);
         let (velocity, sums) = (&mut self.velocity, &self.sums);
         let square = now.parallelism.max(velocity.len(), |row| velocity[row].length_squared());
-        let fastest = square.max(now.walls.fastest_squared()).sqrt();
+        let fastest = square.max(now.walls.fastest_squared()).max(self.grips.fastest_squared() as Real).sqrt();
         now.parallelism.update(&mut velocity[..sums.len()], |row, velocity| {
             *velocity = (*velocity + sums[row]).clamp_length_max(fastest);
         });
+        self.grips.impulse.clone_from(&self.grips.sums);
     }
 
     /// One implicit step by conjugate gradients.
@@ -161,7 +171,9 @@ impl Viscosity {
         self.residual.copy_from_slice(&self.sums);
         self.direction.fill(Vector::ZERO);
         self.direction[..self.residual.len()].copy_from_slice(&self.residual);
-        let mut square = self.product(now, &self.residual, &self.residual);
+        self.grips.residual.clone_from(&self.grips.sums);
+        self.grips.direction.clone_from(&self.grips.sums);
+        let mut square = self.square_of_residual(now);
         let enough = TOLERANCE * TOLERANCE * square;
         for _ in 0..MOST_ITERATIONS {
             if square <= enough || square == 0.0 {
@@ -171,8 +183,10 @@ impl Viscosity {
             // A p = p - dt L p.
             let direction = &self.direction;
             now.parallelism.update(&mut self.sums, |row, sum| *sum = direction[row] - *sum);
-            let step = real(square / self.product(now, &self.direction, &self.sums));
-            let (direction, sums) = (&self.direction, &self.sums);
+            self.grips.take_from_direction();
+            let step = square / self.along_direction(now);
+            self.grips.go(step);
+            let (step, direction, sums) = (real(step), &self.direction, &self.sums);
             let velocity = &mut self.velocity[..sums.len()];
             now.parallelism.chunks2(velocity, &mut self.residual, |first, velocity, residual| {
                 for (k, (velocity, residual)) in velocity.iter_mut().zip(residual).enumerate() {
@@ -180,12 +194,26 @@ impl Viscosity {
                     *residual -= sums[first + k] * step;
                 }
             });
-            let before = std::mem::replace(&mut square, self.product(now, &self.residual, &self.residual));
-            let (kept, residual) = (real(square / before), &self.residual);
+            let before = std::mem::replace(&mut square, self.square_of_residual(now));
+            let kept = square / before;
+            self.grips.turn(kept);
+            let (kept, residual) = (real(kept), &self.residual);
             now.parallelism.update(&mut self.direction[..residual.len()], |row, direction| {
                 *direction = residual[row] + *direction * kept;
             });
         }
+    }
+
+    /// The product of the residual with itself.
+    fn square_of_residual(&self, now: Substep<'_>) -> f64 {
+        let of_bodies = self.grips.product(&self.grips.residual, &self.grips.residual);
+        self.product(now, &self.residual, &self.residual) + of_bodies / f64::from(self.volume)
+    }
+
+    /// The product of the direction with the sums.
+    fn along_direction(&self, now: Substep<'_>) -> f64 {
+        let of_bodies = self.grips.product(&self.grips.direction, &self.grips.sums);
+        self.product(now, &self.direction, &self.sums) + of_bodies / f64::from(self.volume)
     }
 
     /// sum_i rho_i a_i b_i.
@@ -196,29 +224,12 @@ impl Viscosity {
         })
     }
 
-    /// The shear of the new velocities on the samples of bodies.
+    /// The impulses that bodies got.
     fn load_bodies(&self, now: Substep<'_>, out: &mut Corrections) {
-        if now.without_slip.is_empty() {
-            return;
+        let dt = f64::from(now.dt);
+        for (load, impulse) in out.shear_loads_mut().iter_mut().zip(self.grips.impulses()) {
+            *load = OutlineLoad { force: impulse.linear * dt, torque: impulse.angular * dt };
         }
-        let particles = now.particles;
-        let (positions, phases, periodic) = (particles.positions(), particles.phases(), now.neighbors.periodic());
-        let (weights, velocity) = (&self.weights, &self.velocity);
-        let scale = -2.0 * self.volume * self.volume * now.dt * now.dt;
-        now.parallelism.update(out.loads_mut(), |row, load| {
-            if phases[row] != Phase::Rigid || weights[row] == 0.0 {
-                return;
-            }
-            let mut sum = Vector::ZERO;
-            now.neighbors.for_each(row, |other| {
-                if phases[other] != Phase::Rigid && weights[other] > 0.0 {
-                    let apart = periodic.min_image(positions[row] - positions[other]);
-                    let strength = weights[other] * self.kernel.slope(apart.length());
-                    sum += (velocity[other] - velocity[row]) * strength;
-                }
-            });
-            *load += sum * (weights[row] * scale);
-        });
     }
 
     /// The shear of the new velocities on the measured walls.
@@ -241,12 +252,6 @@ impl Viscosity {
             }
         }
     }
-}
-
-/// Whether a row is a sample of a body that fluids do not slip along.
-fn is_without_slip(now: Substep<'_>, row: usize) -> bool {
-    let id = now.particles.ids()[row];
-    now.without_slip.iter().any(|(first, end)| (*first..*end).contains(&id))
 }
 
 /// The field whose Laplacian is taken.
@@ -280,12 +285,15 @@ impl ConstraintGroup for Viscosity {
     }
 
     fn needs(&self) -> Needs {
-        Needs::NEIGHBORS
+        Needs::NEIGHBORS | Needs::WITHOUT_SLIP
     }
 
     fn memory_bytes(&self) -> usize {
         let columns = [&self.velocity, &self.residual, &self.direction, &self.sums];
-        columns.map(held).iter().sum::<usize>() + held(&self.weights) + self.records.memory_bytes()
+        columns.map(held).iter().sum::<usize>()
+            + held(&self.weights)
+            + self.records.memory_bytes()
+            + self.grips.memory_bytes()
     }
 
     fn begin_substep(&mut self, _: Substep<'_>) {
@@ -299,7 +307,8 @@ impl ConstraintGroup for Viscosity {
         }
         self.begin(now);
         // An explicit step is stable while its fastest decay stays below 2.
-        if f64::from(now.dt) * self.fastest <= 2.0 * EXPLICIT {
+        let fastest = self.fastest.max(2.0 * self.grips.fastest_decay());
+        if f64::from(now.dt) * fastest <= 2.0 * EXPLICIT {
             self.step_explicit(now);
         } else {
             self.step_implicit(now);
