@@ -17,7 +17,7 @@ PICTURE = re.compile(r"""(?:!\[[^\]]*\]\(|<img src=")([^)\s"]+)[)"]""")
 
 
 # Pages of measured figures; each says when they were measured, and from which commit.
-MEASURED = ["accuracy", "figure5", "figures", "gallery", "peers", "performance"]
+MEASURED = ["accuracy", "figure5", "figures", "gallery", "peers", "performance", "plain_and_grid"]
 STAMP = re.compile(r"\b20\d\d-\d\d-\d\d, commit [0-9a-f]{7}\b")
 
 shell = pytest.mark.skipif(os.name == "nt", reason="the commands of the documents are those of a POSIX shell")

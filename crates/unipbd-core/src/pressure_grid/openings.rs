@@ -12,6 +12,8 @@ const SAMPLES: usize = 8;
 const LEAST: Real = 0.25;
 /// A corner nearer to a wall than this is on it [cells].
 const ON_WALL: Real = 1e-2;
+/// Pieces of a face beside walls, each with a distance of its own: a wall may end between the corners.
+const PIECES: u8 = 8;
 
 /// Open parts, by cell of the lattice they were measured on.
 #[derive(Default)]
@@ -54,6 +56,10 @@ impl Openings {
                 false => smaller(outlines.distance_from(among, x, 2.0 * cell), distance[0]),
             }
         };
+        let from_wall = |x: Vector, among: &[usize]| {
+            let distance = distance(x, among);
+            if distance.abs() < ON_WALL * cell { 0.0 } else { distance }
+        };
         parallelism.chunks(&mut self.corners, |first, corners| {
             let end = first + corners.len() - 1;
             // A chunk of cells is some rows, or a part of one.
@@ -62,12 +68,28 @@ impl Openings {
             let box_of = [first / stride * stride + left, end / stride * stride + right].map(|k| lattice.corner(k));
             let among = outlines.fixed_within(box_of);
             for (k, corner) in corners.iter_mut().enumerate() {
-                *corner = distance(lattice.corner(first + k), &among) - ON_WALL * cell;
+                *corner = from_wall(lattice.corner(first + k), &among);
             }
         });
         let corner = |k: usize| self.corners.get(k).copied().unwrap_or(-cell);
-        parallelism.fill(&mut self.left, |k| open_part(corner(k), corner(k + stride)));
-        parallelism.fill(&mut self.lower, |k| open_part(corner(k), corner(k + 1)));
+        let part = |k: usize, other: usize, along: Vector| {
+            let [near, far] = [corner(k), corner(other)];
+            if larger(near.abs(), far.abs()) >= cell {
+                return open_part(near, far);
+            }
+            let start = lattice.corner(k);
+            let among = outlines.fixed_within([start, start + along]);
+            let (mut before, mut sum) = (near, 0.0);
+            for piece in 1..=PIECES {
+                let place = start + along * (Real::from(piece) / Real::from(PIECES));
+                let here = if piece == PIECES { far } else { from_wall(place, &among) };
+                sum += open_part(before, here);
+                before = here;
+            }
+            sum / Real::from(PIECES)
+        };
+        parallelism.fill(&mut self.left, |k| part(k, k + stride, Vector::new(0.0, cell)));
+        parallelism.fill(&mut self.lower, |k| part(k, k + 1, Vector::new(cell, 0.0)));
         let open = |faces: &[Real], at: usize| faces.get(at).is_some_and(|part| *part > 0.0);
         let (left, lower) = (&self.left, &self.lower);
         parallelism.fill(&mut self.inverse, |k| {

@@ -4,7 +4,7 @@ use unipbd_core::Solver;
 use unipbd_core::scene::{Block, Domain, Obstacle, Scene, Side, Tank};
 
 use crate::case::{Band, Case, Figure, Measured, Trial};
-use crate::runner::{Failure, points};
+use crate::runner::{Cost, Failure, points};
 use crate::scenes::{GRAVITY, SPACING, pool};
 
 /// A hole as wide as `resolution` spacings.
@@ -23,9 +23,24 @@ const HEADS: [f64; 3] = [12.0, 11.5, 10.0];
 /// Thickness of the floor \[spacings].
 const FLOOR: f64 = 2.0;
 
+/// Places of the hole beside the middle of the tank \[spacings]: its edges on lines of the pressure grid, and between.
+const ASIDE: [f64; 2] = [0.0, 1.0];
+
 fn drain(trial: &Trial) -> Result<Measured, Failure> {
+    let [(on_lines, substeps, cost), (between, _, more)] = [discharge(trial, ASIDE[0])?, discharge(trial, ASIDE[1])?];
+    let band = trial.with_grid(Band::between(0.60, 0.67));
+    let figures = vec![
+        Figure::new("discharge coefficient", on_lines, band),
+        Figure::new("discharge coefficient half a cell aside", between, band),
+        Figure::new(super::SUBSTEPS_PER_FRAME, substeps, Band::OPEN),
+    ];
+    Ok((figures, cost.and(more)))
+}
+
+/// The discharge coefficient of a hole this far aside, substeps per frame, and cost.
+fn discharge(trial: &Trial, aside: f64) -> Result<(f64, f64, Cost), Failure> {
     let hole = f64::from(trial.resolution) * SPACING;
-    let mut run = trial.start(&with_hole(trial))?;
+    let mut run = trial.start(&with_hole(trial, aside))?;
     let head = |solver: &Solver| above_floor(solver) / (WIDTH * hole);
     let (mut flowed, mut expected, mut frames) = (0.0, 0.0, 0);
     while head(&run.solver) > HEADS[2] * hole && frames < trial.frames.min(6000) {
@@ -39,17 +54,13 @@ fn drain(trial: &Trial) -> Result<Measured, Failure> {
         frames += 1;
     }
     let substeps = run.cost.substeps as f64 / f64::from(frames);
-    let figures = vec![
-        Figure::new("discharge coefficient", flowed / expected, trial.with_grid(Band::between(0.60, 0.67))),
-        Figure::new(super::SUBSTEPS_PER_FRAME, substeps, Band::OPEN),
-    ];
-    Ok((figures, run.cost))
+    Ok((flowed / expected, substeps, run.cost))
 }
 
-fn with_hole(trial: &Trial) -> Scene {
+fn with_hole(trial: &Trial, aside: f64) -> Scene {
     let cells = f64::from(trial.resolution);
     let (width, top, floor) = (WIDTH * cells, HEADS[0] * cells, -FLOOR);
-    let [left, right] = [-0.5, 0.5].map(|side| (0.5 * width + side * cells) * SPACING);
+    let [left, right] = [-0.5, 0.5].map(|side| (0.5 * width + aside + side * cells) * SPACING);
     let at = |x: f64, y: f64| [x * SPACING, y * SPACING];
     let sides = Tank::new(at(0.0, -4.0 * cells), at(width, 2.0 * top));
     Scene {
