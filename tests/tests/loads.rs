@@ -122,3 +122,52 @@ fn gas_throws_the_body_that_seals_it_no_higher_than_it_fell() {
         });
     }
 }
+
+/// A steel block that falls on a raft and takes it to the floor: water is shut in between bodies that hold each other.
+fn sunk_raft(raft: f64, block: f64, width: f64, aside: f64) -> Scene {
+    scene(&format!(
+        r#"
+        spacing = 0.02
+        [[liquid]]
+        name = "water"
+        [[block]]
+        material = "water"
+        min = [0.0, 0.0]
+        max = [1.0, 0.6]
+        [[tank]]
+        min = [0.0, 0.0]
+        max = [1.0, 1.2]
+        [[body]]
+        name = "block"
+        size = [0.3, 0.1]
+        position = [{}, 0.9]
+        density = {block}
+        [[body]]
+        name = "raft"
+        size = [{width}, 0.15]
+        position = [0.5, 0.65]
+        density = {raft}
+        "#,
+        0.5 + aside
+    ))
+}
+
+#[test]
+fn water_shut_in_between_bodies_gains_no_energy() {
+    for (raft, block, width, aside) in
+        [(150.0, 7800.0, 0.5, 0.0), (300.0, 7800.0, 0.7, 0.0), (300.0, 11000.0, 0.7, 0.03), (600.0, 11000.0, 0.8, 0.0)]
+    {
+        let mut solver = build(&sunk_raft(raft, block, width, aside), 1);
+        let start = solver.diagnostics().energy();
+        let mut most = [0.0_f64; 2];
+        run(&mut solver, 200, |solver| {
+            let now = solver.diagnostics();
+            most = [most[0].max(now.energy() / start - 1.0), most[1].max(now.speed_max)];
+        });
+        bars("block on a raft in a tank", |bars| {
+            let of = format!("{block} kg/m^2 on {width} m of {raft} kg/m^2");
+            bars.at_most(&format!("energy gained, {of}"), most[0], 0.002);
+            bars.at_most(&format!("fastest [m/s], {of}"), most[1], 15.0);
+        });
+    }
+}

@@ -38,6 +38,11 @@ impl RigidBodies {
         }
     }
 
+    /// Fastest motion of a body's centre [m/s].
+    pub(crate) fn fastest(&self) -> f64 {
+        self.bodies.velocities.iter().map(|velocity| velocity.linear.length()).fold(0.0, f64::max)
+    }
+
     /// Whether a body is moved by what pushes it.
     pub(crate) fn has_dynamic(&self) -> bool {
         (0..self.bodies.len()).any(|id| self.bodies.is_dynamic(id))

@@ -168,6 +168,11 @@ impl RigidBodies {
         self.mobilities.find(self.bodies.inverse_masses(), contacts.joint_rows(), contacts.held_rows());
     }
 
+    /// The same where contacts hold nothing.
+    pub(crate) fn find_mobilities_of_joints(&mut self) {
+        self.mobilities.find(self.bodies.inverse_masses(), self.contacts.joint_rows(), std::iter::empty());
+    }
+
     /// The bodies to be pushed by a pressure grid, their mobilities, and whether it meets a body as one.
     pub(crate) fn immersed(&mut self) -> (&mut Bodies, &Mobilities, impl Fn(u32) -> bool) {
         let met = &self.met;

@@ -77,6 +77,11 @@ impl Lattice {
         }
     }
 
+    /// Longest side \[m].
+    pub fn longest(&self) -> f64 {
+        f64::from(self.cell) * self.width.max(self.height) as f64
+    }
+
     /// Cells from one row to the next.
     pub fn stride(&self) -> usize {
         stride(self.width)

@@ -17,6 +17,7 @@ mod lattice;
 mod level;
 mod mixture;
 mod momentum;
+mod most;
 mod multigrid;
 mod openings;
 mod readings;
@@ -40,6 +41,7 @@ use lattice::Lattice;
 use level::Level;
 pub(crate) use mixture::Mixture;
 use momentum::{momentum, slow_down};
+pub(crate) use most::Most;
 pub(crate) use multigrid::Accuracy;
 use multigrid::{Multigrid, Problem};
 use openings::Openings;
@@ -117,26 +119,22 @@ impl PressureGrid {
         &mut self.filled
     }
 
-    /// Changes the velocities of predicted particles and bodies by the pressure of the grid, and moves them along.
+    /// Changes the velocities of predicted particles and bodies by the pressure of the grid, and moves them along; nothing
+    /// where there are bodies and the pressure exceeds `most`. Whether it was done.
     pub(crate) fn project(
         &mut self,
         particles: &mut Particles,
         (walls, outlines, bodies): (&Walls, &Outlines, Option<Immersed<'_>>),
-        dt: f64,
+        (dt, most): (f64, Most),
         parallelism: Parallelism,
-    ) {
+    ) -> bool {
         self.assemble(particles, (walls, outlines, bodies.as_ref()), dt, parallelism);
+        self.solve(self.accuracy, true, parallelism);
+        if self.solids.any() && self.largest(parallelism) / dt > most.over(self.lattice.longest(), dt) {
+            return false;
+        }
+        self.solve(Accuracy { tolerance: LOOSER_MOVES * self.accuracy.tolerance, ..self.accuracy }, false, parallelism);
         let (system, multigrid) = (&mut self.system, &mut self.multigrid);
-        let mut solve = |accuracy: Accuracy, of_pressure: bool| {
-            let mut solution = std::mem::take(if of_pressure { &mut system.pressure } else { &mut system.potential });
-            let right_side = if of_pressure { &system.divergence } else { &system.excess };
-            let problem =
-                Pressed { accuracy, system, components: &self.components, solids: &self.solids, fluid: &self.fluid };
-            multigrid.solve(right_side, &mut solution, &problem, parallelism);
-            *(if of_pressure { &mut system.pressure } else { &mut system.potential }) = solution;
-        };
-        solve(self.accuracy, true);
-        solve(Accuracy { tolerance: LOOSER_MOVES * self.accuracy.tolerance, ..self.accuracy }, false);
         if !self.mixture.fills {
             let liquid = (multigrid.spans(), self.lattice.stride());
             system.end_suction(&self.openings, &self.components, liquid, parallelism);
@@ -160,6 +158,24 @@ impl PressureGrid {
         }
         self.system.set_constants(&self.lattice, &self.openings, &self.components);
         self.system.join_solutions(&self.lattice);
+        true
+    }
+
+    /// Solves for the pressure, or for the moves.
+    fn solve(&mut self, accuracy: Accuracy, of_pressure: bool, parallelism: Parallelism) {
+        let system = &mut self.system;
+        let mut solution = std::mem::take(if of_pressure { &mut system.pressure } else { &mut system.potential });
+        let right_side = if of_pressure { &system.divergence } else { &system.excess };
+        let problem =
+            Pressed { accuracy, system, components: &self.components, solids: &self.solids, fluid: &self.fluid };
+        self.multigrid.solve(right_side, &mut solution, &problem, parallelism);
+        *(if of_pressure { &mut system.pressure } else { &mut system.potential }) = solution;
+    }
+
+    /// Largest pressure over density, times the substep [m^2/s].
+    fn largest(&self, parallelism: Parallelism) -> f64 {
+        let pressure = &self.system.pressure;
+        f64::from(parallelism.max(pressure.len(), |cell| pressure[cell].abs()) * self.lattice.cell)
     }
 
     /// Sets up both systems.

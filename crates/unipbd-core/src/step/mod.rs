@@ -12,6 +12,7 @@ mod first_body;
 mod fluid_parts;
 mod gauges;
 mod gravity;
+mod grid;
 mod integrate;
 mod pipeline;
 mod query;

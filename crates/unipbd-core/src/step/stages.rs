@@ -5,13 +5,11 @@ use super::pipeline::CorrectionStep;
 use super::world::World;
 use super::{SolverError, Stage};
 use crate::constraints::{ConstraintGroup, DensityGroup};
-use crate::coupling::RigidBodies;
 use crate::effects::Advected;
 use crate::math::{Real, Vector, wide};
 use crate::neighbors::{Prepared, SearchPositions};
 use crate::parallel::Parallelism;
 use crate::particles::Particles;
-use crate::pressure_grid::Immersed;
 
 /// Speed in spacings per frame beyond which a run has diverged.
 pub(crate) const ABSURD_SPEED: f64 = 1e6;
@@ -76,40 +74,6 @@ impl World {
         let parts = &mut self.parts;
         integrate::predict(&mut parts.particles, &parts.forces, self.clock.dt as Real, parts.parallelism);
         parts.particles.clear_accelerations();
-    }
-
-    fn project_on_grid(&mut self) {
-        let parts = &mut self.parts;
-        let Some(grid) = parts.pressure_grid.as_mut().filter(|_| parts.particles.awake() > 0) else { return };
-        if let Some(rigid) = &parts.rigid {
-            let filled = grid.filled_mut();
-            filled.clear();
-            rigid.each_filled(|x| filled.push(x));
-        }
-        let mut immersed = parts.rigid.as_mut().map(RigidBodies::immersed);
-        let bodies = immersed.as_mut().map(|(bodies, mobilities, counts)| Immersed { bodies, counts, mobilities });
-        let around = (&parts.walls, &parts.outlines, bodies);
-        integrate::let_sleepers_fall(&mut parts.particles, &parts.forces, self.clock.dt as Real);
-        grid.project(&mut parts.particles, around, self.clock.dt, parts.parallelism);
-        integrate::stop_sleepers(&mut parts.particles);
-        if let Some((bodies, ..)) = immersed {
-            grid.push_outlines(&parts.outlines, bodies, self.clock.dt);
-        }
-    }
-
-    fn add_grid_wall_forces(&mut self) {
-        let parts = &self.parts;
-        let Some(grid) = parts.pressure_grid.as_ref().filter(|_| parts.particles.awake() > 0) else { return };
-        grid.push_walls(&parts.walls, &mut self.wall_impulses);
-    }
-
-    fn add_grid_pressure(&mut self) {
-        let parts = &mut self.parts;
-        let last = self.clock.done + 1 == self.clock.substeps;
-        if let Some(grid) = parts.pressure_grid.as_ref().filter(|_| last) {
-            let per_pressure = self.clock.dt * self.clock.dt / parts.pressure_scale;
-            grid.add_pressure(&mut parts.particles, self.clock.dt as Real, per_pressure as Real, parts.parallelism);
-        }
     }
 
     fn predict_bodies(&mut self) {

@@ -6,6 +6,7 @@ use crate::coupling::RigidBodies;
 use crate::math::{Vector, Vector64, vector, wide};
 use crate::observe::{Event, Severity, SubstepReason};
 use crate::phase::Phase;
+use crate::pressure_grid::Most;
 use crate::step::clock::Push;
 use crate::step::world::World;
 use std::ops::Range;
@@ -16,6 +17,8 @@ const PRESSURE_MARGIN: f64 = 8.0;
 /// expected one: they rise when the number changes, and must not change it in turn. A column that is let go
 /// swings to twice its weight; to answer that with more substeps pumps energy into the swing.
 const UNEXPECTED: f64 = 3.0;
+/// Margin of the pressure by which the grid stops what moves.
+const STOPPED: f64 = 0.25;
 /// Speed limit, in spacings per frame, that is always granted to a compressed liquid.
 const LEAST_SPEED: f64 = 2.0;
 
@@ -223,15 +226,24 @@ impl World {
     fn pressure_limit_of(&self, fluids: FluidStatistics) -> f64 {
         let least = LEAST_SPEED * self.parts.spacing / self.parts.frame_time;
         let tension = self.parts.substeps.tension_pressure();
-        let expected = self.depth_pressure(fluids) + 0.5 * fluids.square_of_speed() + tension + self.body_pressure();
+        // The grid bears what bodies press with.
+        let of_bodies = if self.parts.pressure_grid.is_none() { self.body_pressure() } else { 0.0 };
+        let expected = self.depth_pressure(fluids) + 0.5 * fluids.square_of_speed() + tension + of_bodies;
         PRESSURE_MARGIN * expected + least * least
     }
 
-    /// Largest pressure of bodies over the density of the lightest fluid that carries them, where particles alone do
-    /// [m^2/s^2].
+    /// The largest pressure that the grid may find where contacts hold bodies: with margins, what depth, speed and bodies
+    /// bring about, and what stops the fastest matter.
+    pub(in crate::step) fn most_of_grid(&self) -> Most {
+        let of_bodies = self.parts.rigid.as_ref().map_or(0.0, RigidBodies::fastest);
+        let pressure = self.clock.pressure_limit + PRESSURE_MARGIN * self.body_pressure();
+        Most { pressure, stopped: STOPPED * self.clock.speed.max(of_bodies) }
+    }
+
+    /// Largest pressure of bodies over the density of the lightest fluid that carries them [m^2/s^2].
     fn body_pressure(&self) -> f64 {
         let parts = &self.parts;
-        let Some(rigid) = parts.rigid.as_ref().filter(|_| parts.pressure_grid.is_none()) else { return 0.0 };
+        let Some(rigid) = parts.rigid.as_ref() else { return 0.0 };
         let fluids = parts.materials.iter().filter(|material| material.phase.is_fluid());
         let lightest = fluids.map(|fluid| fluid.density).fold(f64::INFINITY, f64::min);
         if lightest.is_finite() { rigid.pressure(f64::from(parts.gravity.length())) / lightest } else { 0.0 }
