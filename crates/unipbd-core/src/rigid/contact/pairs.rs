@@ -11,7 +11,7 @@ use crate::rigid::{Bodies, Surface};
 /// Frames for which the enlarged boxes hold a body that goes on as it does.
 const ROOM: f64 = 2.0;
 /// Room of the enlarged boxes in addition, relative to the size of the piece.
-const SIDE: f64 = 0.1;
+const SIDE: f64 = 0.07;
 
 /// Two pieces, or a piece and a half-plane, that may touch.
 #[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
