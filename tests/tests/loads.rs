@@ -1,9 +1,11 @@
-//! Loads that the particles alone must carry: heavy bodies on water, hot gas below a lid. The pressure grid is off, but
-//! where a test compares both.
+//! Loads where fluids and bodies meet: heavy bodies on water and gas, hot gas below a lid, stones on a floor. Most are
+//! carried by the particles alone, without the pressure grid.
 
 use unipbd_core::Solver;
-use unipbd_core::scene::{Gas, Scene};
+use unipbd_core::scene::{BodyDescription, Gas, Scene};
 use unipbd_tests::{bars, build, run, scene};
+
+use crate::outlines::fluid;
 
 /// Water below a locked block as wide as its tank, without the pressure grid.
 fn piston(depth: f64, bottom: f64, mass: f64) -> Scene {
@@ -168,6 +170,54 @@ fn water_shut_in_between_bodies_gains_no_energy() {
             let of = format!("{block} kg/m^2 on {width} m of {raft} kg/m^2");
             bars.at_most(&format!("energy gained, {of}"), most[0], 0.002);
             bars.at_most(&format!("fastest [m/s], {of}"), most[1], 15.0);
+        });
+    }
+}
+
+/// Discs of stone on the floor of a tank, and more between them, under water.
+fn sunk_discs(grid: &str) -> Scene {
+    let mut sunk = scene(&format!(
+        r#"
+        spacing = 0.02
+        [solver]
+        pressure_grid = "{grid}"
+        [[liquid]]
+        name = "water"
+        [[block]]
+        material = "water"
+        min = [0.0, 0.0]
+        max = [1.2, 0.5]
+        [[tank]]
+        name = "tank"
+        min = [0.0, 0.0]
+        max = [1.2, 1.4]
+        "#
+    ));
+    let places =
+        (0..5).map(|k| [0.2 + 0.2 * f64::from(k), 0.06]).chain((0..4).map(|k| [0.3 + 0.2 * f64::from(k), 0.3]));
+    sunk.body = places.map(|place| BodyDescription { density: 2500.0, ..BodyDescription::disc(0.06, place) }).collect();
+    sunk
+}
+
+#[test]
+fn a_floor_carries_the_weight_of_water_and_of_what_lies_in_it() {
+    for (grid, most) in [("off", 0.01), ("on", 0.03)] {
+        let mut solver = build(&sunk_discs(grid), 1);
+        let of_water = fluid(&solver).count() as f64 * 1000.0 * 0.02 * 0.02;
+        let weight = 9.81 * (of_water + solver.bodies().iter().map(|body| body.mass).sum::<f64>());
+        run(&mut solver, 180, |_| ());
+        let mut floor = 0.0;
+        run(&mut solver, 60, |solver| {
+            let force =
+                solver.wall_forces().into_iter().find(|wall| wall.name == "tank bottom").expect("it is measured");
+            floor -= force.force.y / 60.0;
+        });
+        bars("discs of stone on the floor under water", |bars| {
+            bars.at_most(
+                &format!("force on the floor off the weight, grid {grid}"),
+                (floor / weight - 1.0).abs(),
+                most,
+            );
         });
     }
 }

@@ -7,7 +7,8 @@ use super::system::System;
 use crate::math::{Real, Vector, smaller};
 
 impl System {
-    /// The pressure at a place, in the unit of the solution [m/s]: air has none, walls that beside them.
+    /// The pressure at a place, in the unit of the solution [m/s]: air has none, walls and the inside of bodies that beside
+    /// them.
     pub fn pressure_at(&self, lattice: &Lattice, openings: &Openings, x: Vector) -> Real {
         let place = lattice.place(x);
         if !lattice.holds(place) {
@@ -16,11 +17,18 @@ impl System {
         let (nodes, stride) = (lattice.around(place).centre, lattice.stride());
         let cells = [nodes.first, nodes.first + 1, nodes.first + stride, nodes.first + stride + 1];
         let (mut sum, mut weights) = (0.0, 0.0);
-        for (cell, weight) in cells.into_iter().zip(nodes.weights()).filter(|(cell, _)| openings.inverse[*cell] > 0.0) {
+        for (cell, weight) in
+            cells.into_iter().zip(nodes.weights()).filter(|(cell, _)| self.is_outside(openings, *cell))
+        {
             sum += weight * self.pressure[cell];
             weights += weight;
         }
         if weights > 0.0 { sum / weights } else { 0.0 }
+    }
+
+    /// Whether a cell has a part outside walls and bodies.
+    fn is_outside(&self, openings: &Openings, cell: usize) -> bool {
+        openings.inverse[cell] > 0.0 && !self.masked.get(cell).is_some_and(|&masked| masked)
     }
 
     /// The pressure at a wall [m/s], from two places before it: linear across a cell and a half. `None` without fluid.
@@ -34,7 +42,7 @@ impl System {
             let x = surface + normal * (cells * lattice.cell);
             let place = lattice.place(x);
             let cell = lattice.cell_at(place)?;
-            (openings.inverse[cell] > 0.0 && self.depth[cell] >= 0.0).then(|| self.pressure_at(lattice, openings, x))
+            (self.is_outside(openings, cell) && self.depth[cell] >= 0.0).then(|| self.pressure_at(lattice, openings, x))
         };
         let (near, far) = (at(0.5)?, at(1.5));
         Some(near + 0.5 * far.map_or(0.0, |far| near - far))
