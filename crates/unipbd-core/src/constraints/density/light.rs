@@ -10,7 +10,7 @@ use crate::rigid::Mobility;
 /// What a displacement of a body changes in the density error of a particle: along x, along y and by a rotation.
 type Change = [f64; 3];
 
-/// Rounds in which particles begin or cease to push.
+/// Rounds in which multipliers begin or cease to follow their errors.
 const ROUNDS: usize = 4;
 
 /// A particle near a light body.
@@ -31,18 +31,17 @@ impl<K: Shape> Density<K> {
         let share = f64::from(self.settings.velocity_share);
         for body in now.light {
             let (touched, mobility) = (self.touched(now, body), body.mobility.map(|row| row.map(|w| w * share)));
-            let (mut moved, mut pushing) = ([0.0; 3], Vec::new());
+            let (mut moved, mut answering) = ([0.0; 3], Vec::new());
             for _ in 0..ROUNDS {
-                let now_pushing: Vec<bool> =
-                    touched.iter().map(|of| self.multiplier_after(now, of, moved) > 0.0).collect();
-                if now_pushing == pushing {
+                let now_answering: Vec<bool> = touched.iter().map(|of| self.answers(now, of, moved)).collect();
+                if now_answering == answering {
                     break;
                 }
-                pushing = now_pushing;
+                answering = now_answering;
                 let (mut push, mut stiffness) = ([0.0; 3], [[0.0; 3]; 3]);
-                for of in touched.iter().zip(&pushing).filter(|(_, pushes)| **pushes).map(|(of, _)| of) {
+                for (of, answers) in touched.iter().zip(&answering) {
                     let multiplier = f64::from(self.multiplier_after(now, of, moved));
-                    let per_error = f64::from(now.stiffness * self.relaxation(now, of.row) / of.response);
+                    let per_error = if *answers { f64::from(self.per_error(now, of)) } else { 0.0 };
                     let along = dot(of.change, moved) * per_error;
                     for k in 0..3 {
                         push[k] -= (multiplier - along) * of.change[k];
@@ -57,6 +56,18 @@ impl<K: Shape> Density<K> {
                 self.step[of.row] = (new - of.old) / self.settings.step_unit;
             }
         }
+    }
+
+    /// Whether the multiplier of a particle follows its error: at a bound it does not.
+    fn answers(&self, now: Substep<'_>, of: &Touched, moved: [f64; 3]) -> bool {
+        let error = self.error[of.row] + real(dot(of.change, moved));
+        let free = of.old + now.stiffness * self.relaxation(now, of.row) * error / of.response;
+        self.multiplier_after(now, of, moved) == free
+    }
+
+    /// Change of a multiplier by that of its error.
+    fn per_error(&self, now: Substep<'_>, of: &Touched) -> Real {
+        now.stiffness * self.relaxation(now, of.row) / of.response
     }
 
     /// The multiplier of a particle after a displacement of the body.
