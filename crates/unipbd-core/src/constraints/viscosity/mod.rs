@@ -24,7 +24,7 @@ const MOST_ITERATIONS: u32 = 1000;
 
 /// Physical viscosity nu: the Laplacian of Brookshaw 1985 and Morris et al. 1997,
 /// rho_i dv_i/dt = sum_j 2 V mu_ij (v_i - v_j) g_ij with grad W = g x and mu_ij the geometric mean of
-/// both, which keeps momentum; walls and bodies without slip add their share ([`Grips`]).
+/// both, which keeps momentum; walls and bodies without slip add their share.
 ///
 /// It acts on the predicted velocities, gravity and others included, so that particles move as they would between
 /// viscosity and load. Short steps are explicit; long ones are implicit, v - dt L v = v', by conjugate gradients: L is

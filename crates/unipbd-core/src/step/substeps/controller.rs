@@ -90,7 +90,7 @@ impl SubstepRule {
     }
 
     /// Substeps of a frame of this length \[s] by the shear along a body of this size \[m], where a grid carries the
-    /// pressure: see [`LAYER`].
+    /// pressure: see `LAYER`.
     pub fn by_shear(&self, frame: f64, size: f64) -> f64 {
         (self.viscosity * frame / (LAYER * LAYER * size * size)).min(MOST_BY_SHEAR)
     }
