@@ -7,6 +7,7 @@
 //! solution of the same system moves particles, without their velocities, out of cells that are too full. Nothing is
 //! kept from one substep to the next: a saved run goes on bit for bit.
 
+mod bound;
 mod chords;
 mod components;
 mod couplings;
@@ -17,7 +18,7 @@ mod lattice;
 mod level;
 mod mixture;
 mod momentum;
-mod most;
+
 mod multigrid;
 mod openings;
 mod readings;
@@ -35,13 +36,13 @@ use crate::periodic::{Periodic, PeriodicAxis};
 use crate::rigid::{Bodies, Twist};
 use crate::scene::CELL;
 use crate::walls::{Moment, Outlines, Walls};
+pub(crate) use bound::PressureBound;
 use components::Components;
 use couplings::Couplings;
 use lattice::Lattice;
 use level::Level;
 pub(crate) use mixture::Mixture;
 use momentum::{momentum, slow_down};
-pub(crate) use most::Most;
 pub(crate) use multigrid::Accuracy;
 use multigrid::{Multigrid, Problem};
 use openings::Openings;
@@ -120,17 +121,17 @@ impl PressureGrid {
     }
 
     /// Changes the velocities of predicted particles and bodies by the pressure of the grid, and moves them along; nothing
-    /// where there are bodies and the pressure exceeds `most`. Whether it was done.
+    /// where there are bodies and the pressure exceeds its bound. Whether it was done.
     pub(crate) fn project(
         &mut self,
         particles: &mut Particles,
         (walls, outlines, bodies): (&Walls, &Outlines, Option<Immersed<'_>>),
-        (dt, most): (f64, Most),
+        (dt, bound): (f64, PressureBound),
         parallelism: Parallelism,
     ) -> bool {
         self.assemble(particles, (walls, outlines, bodies.as_ref()), dt, parallelism);
         self.solve(self.accuracy, true, parallelism);
-        if self.solids.any() && self.largest(parallelism) / dt > most.over(self.lattice.longest(), dt) {
+        if self.solids.any() && self.largest(parallelism) / dt > bound.limit(self.lattice.longest(), dt) {
             return false;
         }
         self.solve(Accuracy { tolerance: LOOSER_MOVES * self.accuracy.tolerance, ..self.accuracy }, false, parallelism);

@@ -4,7 +4,7 @@ use super::integrate;
 use super::world::World;
 use crate::coupling::RigidBodies;
 use crate::math::Real;
-use crate::pressure_grid::{Immersed, Most};
+use crate::pressure_grid::{Immersed, PressureBound};
 
 impl World {
     pub(super) fn project_on_grid(&mut self) {
@@ -16,10 +16,10 @@ impl World {
             rigid.each_filled(|x| filled.push(x));
         }
         integrate::let_sleepers_fall(&mut parts.particles, &parts.forces, self.clock.dt as Real);
-        if !self.project_on_grid_below(self.most_of_grid()) {
+        if !self.project_on_grid_within(self.grid_pressure_bound()) {
             // Fluid shut in between bodies that hold each other bears anything: it parts them instead.
             self.parts.rigid.iter_mut().for_each(RigidBodies::find_mobilities_of_joints);
-            self.project_on_grid_below(Most::ANY);
+            self.project_on_grid_within(PressureBound::NONE);
         }
         let parts = &mut self.parts;
         integrate::stop_sleepers(&mut parts.particles);
@@ -28,14 +28,14 @@ impl World {
         }
     }
 
-    /// Takes the pressure of the grid to fluids and bodies, if it can be true.
-    fn project_on_grid_below(&mut self, most: Most) -> bool {
+    /// Takes the pressure of the grid to fluids and bodies, if it is within this bound.
+    fn project_on_grid_within(&mut self, bound: PressureBound) -> bool {
         let parts = &mut self.parts;
         let Some(grid) = &mut parts.pressure_grid else { return true };
         let mut immersed = parts.rigid.as_mut().map(RigidBodies::immersed);
         let bodies = immersed.as_mut().map(|(bodies, mobilities, counts)| Immersed { bodies, counts, mobilities });
         let around = (&parts.walls, &parts.outlines, bodies);
-        grid.project(&mut parts.particles, around, (self.clock.dt, most), parts.parallelism)
+        grid.project(&mut parts.particles, around, (self.clock.dt, bound), parts.parallelism)
     }
 
     pub(super) fn add_grid_wall_forces(&mut self) {

@@ -6,7 +6,7 @@ use crate::coupling::RigidBodies;
 use crate::math::{Vector, Vector64, vector, wide};
 use crate::observe::{Event, Severity, SubstepReason};
 use crate::phase::Phase;
-use crate::pressure_grid::Most;
+use crate::pressure_grid::PressureBound;
 use crate::step::clock::Push;
 use crate::step::world::World;
 use std::ops::Range;
@@ -234,10 +234,10 @@ impl World {
 
     /// The largest pressure that the grid may find where contacts hold bodies: with margins, what depth, speed and bodies
     /// bring about, and what stops the fastest matter.
-    pub(in crate::step) fn most_of_grid(&self) -> Most {
+    pub(in crate::step) fn grid_pressure_bound(&self) -> PressureBound {
         let of_bodies = self.parts.rigid.as_ref().map_or(0.0, RigidBodies::fastest);
         let pressure = self.clock.pressure_limit + PRESSURE_MARGIN * self.body_pressure();
-        Most { pressure, stopped: STOPPED * self.clock.speed.max(of_bodies) }
+        PressureBound { pressure, stopped: STOPPED * self.clock.speed.max(of_bodies) }
     }
 
     /// Largest pressure of bodies over the density of the lightest fluid that carries them [m^2/s^2].
