@@ -73,3 +73,8 @@ pub fn direction(angle: f64) -> Vector64 {
 pub fn angle_of(vector: Vector64) -> f64 {
     libm::atan2(vector.y, vector.x)
 }
+
+/// The product of two rows of three numbers: forces with torques, displacements with rotations.
+pub(crate) fn dot3(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}

@@ -124,16 +124,22 @@ impl RigidBodies {
             && view.mass < LIGHT * displaced
     }
 
+    /// The bodies that are light beside the fluids; none is looked at where there is no fluid.
+    fn each_light(&self) -> impl Iterator<Item = u32> + '_ {
+        let count = if self.heaviest > 0.0 { self.bodies.len() } else { 0 };
+        (0..count as u32).filter(|&body| self.is_light(body))
+    }
+
     /// Whether any body is light beside the fluids.
     pub(crate) fn any_light(&self) -> bool {
-        self.heaviest > 0.0 && (0..self.bodies.len() as u32).any(|body| self.is_light(body))
+        self.each_light().next().is_some()
     }
 
     /// Lists the light bodies where they are predicted to be.
     pub(crate) fn find_light(&mut self) {
         let mut light = std::mem::take(&mut self.light);
         light.clear();
-        light.extend((0..self.bodies.len() as u32).filter(|&body| self.is_light(body)).map(|body| LightBody {
+        light.extend(self.each_light().map(|body| LightBody {
             samples: self.sample_ids[body as usize],
             centre: self.bodies.predicted_pose(body).position,
             mobility: self.mobilities.of(body),

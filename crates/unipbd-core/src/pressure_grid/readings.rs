@@ -28,7 +28,7 @@ impl System {
 
     /// Whether a cell has a part outside walls and bodies.
     fn is_outside(&self, openings: &Openings, cell: usize) -> bool {
-        openings.inverse[cell] > 0.0 && !self.masked.get(cell).is_some_and(|&masked| masked)
+        openings.inverse[cell] > 0.0 && (self.depth[cell] < 0.0 || self.counts(cell))
     }
 
     /// The pressure at a wall [m/s], from two places before it: linear across a cell and a half. `None` without fluid.
@@ -42,7 +42,7 @@ impl System {
             let x = surface + normal * (cells * lattice.cell);
             let place = lattice.place(x);
             let cell = lattice.cell_at(place)?;
-            (self.is_outside(openings, cell) && self.depth[cell] >= 0.0).then(|| self.pressure_at(lattice, openings, x))
+            (openings.inverse[cell] > 0.0 && self.counts(cell)).then(|| self.pressure_at(lattice, openings, x))
         };
         let (near, far) = (at(0.5)?, at(1.5));
         Some(near + 0.5 * far.map_or(0.0, |far| near - far))

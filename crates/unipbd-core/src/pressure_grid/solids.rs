@@ -6,7 +6,7 @@
 use super::chords::Outline;
 use super::lattice::Lattice;
 use crate::bytes::held;
-use crate::math::{Real, Vector64};
+use crate::math::{Real, Vector64, dot3};
 use crate::rigid::{Bodies, Mobilities, Mobility, Pose, Twist};
 use std::ops::Range;
 
@@ -215,7 +215,7 @@ impl Solids {
         let mut sum = [0.0; 3];
         for response in &self.responses[solid.responses.clone()] {
             let load = self.load(&self.solids[response.to as usize], pressure, stride);
-            let change = response.change.map(|row| row[0] * load[0] + row[1] * load[1] + row[2] * load[2]);
+            let change = response.change.map(|row| dot3(row, load));
             sum = std::array::from_fn(|k| sum[k] + change[k]);
         }
         sum

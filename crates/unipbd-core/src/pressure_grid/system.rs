@@ -56,7 +56,7 @@ pub(super) struct System {
     /// 1 less the largest covered part of the faces of each cell.
     bare: Vec<Real>,
     /// Cells inside bodies; empty without bodies.
-    pub masked: Vec<bool>,
+    masked: Vec<bool>,
     /// Cells with changed openings since the last substep.
     touched: Vec<u32>,
     /// Negative divergence of the velocity in each cell: the inflow [m/s].

@@ -5,6 +5,7 @@
 //! joints share one matrix W, so that a load on one moves the others too; a spring gives way, which adds to J W J^T.
 
 use super::InverseMass;
+use crate::math::dot3;
 use crate::scene::MOST_JOINED;
 use crate::union_find::UnionFind;
 use std::ops::Range;
@@ -173,7 +174,7 @@ impl Mobilities {
     fn hold(&mut self, free: &[InverseMass], row: &HeldRow) -> bool {
         let along = |(body, way): Side| match free.get(body as usize) {
             Some(free) => {
-                let [found, most] = [dot(times(&self.of(body), way), way), along_free(*free, way)];
+                let [found, most] = [dot3(times(&self.of(body), way), way), along_free(*free, way)];
                 if found > ROUNDING * most { found } else { 0.0 }
             }
             None => 0.0,
@@ -218,16 +219,12 @@ fn is_movable(body: &InverseMass) -> bool {
 }
 
 fn times(mobility: &Mobility, way: [f64; 3]) -> [f64; 3] {
-    mobility.map(|row| dot(row, way))
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    mobility.map(|row| dot3(row, way))
 }
 
 /// The same with the first three of some entries.
 fn of_three(entries: &[f64], way: [f64; 3]) -> f64 {
-    dot([entries[0], entries[1], entries[2]], way)
+    dot3([entries[0], entries[1], entries[2]], way)
 }
 
 fn diagonal(body: InverseMass) -> [f64; 3] {
@@ -236,7 +233,7 @@ fn diagonal(body: InverseMass) -> [f64; 3] {
 
 /// Mobility of a free body along a way.
 fn along_free(body: InverseMass, way: [f64; 3]) -> f64 {
-    dot(diagonal(body), way.map(|part| part * part))
+    dot3(diagonal(body), way.map(|part| part * part))
 }
 
 #[cfg(test)]

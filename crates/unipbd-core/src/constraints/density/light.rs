@@ -4,7 +4,7 @@
 use super::{Density, DensitySettings as Settings};
 use crate::constraints::{LightBody, Substep};
 use crate::kernel::Shape;
-use crate::math::{Real, larger, real, wide};
+use crate::math::{Real, dot3, larger, real, wide};
 use crate::rigid::Mobility;
 
 /// What a displacement of a body changes in the density error of a particle: along x, along y and by a rotation.
@@ -33,16 +33,17 @@ impl<K: Shape> Density<K> {
             let (touched, mobility) = (self.touched(now, body), body.mobility.map(|row| row.map(|w| w * share)));
             let (mut moved, mut answering) = ([0.0; 3], Vec::new());
             for _ in 0..ROUNDS {
-                let now_answering: Vec<bool> = touched.iter().map(|of| self.answers(now, of, moved)).collect();
+                let after: Vec<_> = touched.iter().map(|of| self.multiplier_after(now, of, moved)).collect();
+                let now_answering: Vec<bool> = after.iter().map(|(_, answers)| *answers).collect();
                 if now_answering == answering {
                     break;
                 }
                 answering = now_answering;
                 let (mut push, mut stiffness) = ([0.0; 3], [[0.0; 3]; 3]);
-                for (of, answers) in touched.iter().zip(&answering) {
-                    let multiplier = f64::from(self.multiplier_after(now, of, moved));
-                    let per_error = if *answers { f64::from(self.per_error(now, of)) } else { 0.0 };
-                    let along = dot(of.change, moved) * per_error;
+                for (of, (multiplier, answers)) in touched.iter().zip(after) {
+                    let multiplier = f64::from(multiplier);
+                    let per_error = if answers { f64::from(self.per_error(now, of)) } else { 0.0 };
+                    let along = dot3(of.change, moved) * per_error;
                     for k in 0..3 {
                         push[k] -= (multiplier - along) * of.change[k];
                         (0..3).for_each(|l| stiffness[k][l] += per_error * of.change[k] * of.change[l]);
@@ -51,18 +52,11 @@ impl<K: Shape> Density<K> {
                 moved = answer(mobility, stiffness, push);
             }
             for of in touched {
-                let new = self.multiplier_after(now, &of, moved);
+                let (new, _) = self.multiplier_after(now, &of, moved);
                 self.multiplier[of.row] = new;
                 self.step[of.row] = (new - of.old) / self.settings.step_unit;
             }
         }
-    }
-
-    /// Whether the multiplier of a particle follows its error: at a bound it does not.
-    fn answers(&self, now: Substep<'_>, of: &Touched, moved: [f64; 3]) -> bool {
-        let error = self.error[of.row] + real(dot(of.change, moved));
-        let free = of.old + now.stiffness * self.relaxation(now, of.row) * error / of.response;
-        self.multiplier_after(now, of, moved) == free
     }
 
     /// Change of a multiplier by that of its error.
@@ -70,12 +64,15 @@ impl<K: Shape> Density<K> {
         now.stiffness * self.relaxation(now, of.row) / of.response
     }
 
-    /// The multiplier of a particle after a displacement of the body.
-    fn multiplier_after(&self, now: Substep<'_>, of: &Touched, moved: [f64; 3]) -> Real {
+    /// The multiplier of a particle after a displacement of the body, and whether it follows the error: at a bound it does
+    /// not.
+    fn multiplier_after(&self, now: Substep<'_>, of: &Touched, moved: [f64; 3]) -> (Real, bool) {
         let (particles, limit) = (now.particles, now.pressure_limit * now.dt * now.dt);
         let material = self.settings.materials[usize::from(particles.materials()[of.row])];
-        let error = self.error[of.row] + real(dot(of.change, moved));
-        material.multiplier(of.old, error, of.response, particles.inverse_masses()[of.row], now.stiffness, limit)
+        let error = self.error[of.row] + real(dot3(of.change, moved));
+        let inverse_mass = particles.inverse_masses()[of.row];
+        let new = material.multiplier(of.old, error, of.response, inverse_mass, now.stiffness, limit);
+        (new, new == material.unbounded(of.old, error, of.response, now.stiffness))
     }
 
     fn relaxation(&self, now: Substep<'_>, row: usize) -> Real {
@@ -124,8 +121,8 @@ fn answer(mobility: Mobility, stiffness: [[f64; 3]; 3], push: [f64; 3]) -> [f64;
     let column = |l: usize| stiffness.map(|row| row[l]);
     let unit = |k: usize, l: usize| f64::from(u8::from(k == l));
     let mut rows: [[f64; 4]; 3] = std::array::from_fn(|k| {
-        let [a, b, c] = std::array::from_fn(|l| unit(k, l) + dot(mobility[k], column(l)));
-        [a, b, c, dot(mobility[k], push)]
+        let [a, b, c] = std::array::from_fn(|l| unit(k, l) + dot3(mobility[k], column(l)));
+        [a, b, c, dot3(mobility[k], push)]
     });
     for pivot in 0..3 {
         for k in (0..3).filter(|&k| k != pivot) {
@@ -134,8 +131,4 @@ fn answer(mobility: Mobility, stiffness: [[f64; 3]; 3], push: [f64; 3]) -> [f64;
         }
     }
     std::array::from_fn(|k| rows[k][3] / rows[k][k])
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }

@@ -385,10 +385,16 @@ impl DensityMaterial {
         let scripted = inverse_mass == 0.0;
         let least = if scripted { 0.0 } else { self.multiplier_min };
         let floor = if scripted { self.scripted_response_min } else { self.response_min };
-        let new = old + stiffness * self.relaxation * error / larger(response, floor);
+        let new = self.unbounded(old, error, larger(response, floor), stiffness);
         // A confined particle must not push harder the shorter the substep is.
         let limit = limit * self.mass;
         let new = smaller(larger(larger(new, least), -limit), limit);
         if error < self.gate || self.relaxation == 0.0 { old } else { new }
+    }
+
+    /// The same without its bounds.
+    #[inline(always)]
+    pub(super) fn unbounded(&self, old: Real, error: Real, response: Real, stiffness: Real) -> Real {
+        old + stiffness * self.relaxation * error / response
     }
 }

@@ -3,7 +3,7 @@
 
 use crate::bytes::held;
 use crate::constraints::Substep;
-use crate::math::{Real, Vector, Vector64, vector, wide};
+use crate::math::{Real, Vector, Vector64, dot3, vector, wide};
 use crate::parallel::CHUNK_ROWS;
 use crate::rigid::{Mobility, Twist};
 
@@ -153,15 +153,15 @@ impl Grips {
         moved.fill(Screw::default());
         for Response { outline, to, change } in &self.responses {
             let of = impulses[*to];
-            moved[*outline] = std::array::from_fn(|k| moved[*outline][k] + dot(change[k], of));
+            moved[*outline] = std::array::from_fn(|k| moved[*outline][k] + dot3(change[k], of));
         }
     }
 
     /// Twice the energy of two sets of impulses.
     pub fn product(&self, a: &[Screw], b: &[Screw]) -> f64 {
         let of = |response: &Response| {
-            let moved: Screw = std::array::from_fn(|k| dot(response.change[k], b[response.to]));
-            dot(a[response.outline], moved)
+            let moved: Screw = std::array::from_fn(|k| dot3(response.change[k], b[response.to]));
+            dot3(a[response.outline], moved)
         };
         self.responses.iter().map(of).sum()
     }
@@ -208,9 +208,5 @@ fn at([x, y, turn]: Screw, arm: Vector64) -> Vector64 {
 }
 
 fn along(change: &Mobility, way: &Screw) -> f64 {
-    dot(change.map(|row| dot(row, *way)), *way)
-}
-
-fn dot(a: Screw, b: Screw) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+    dot3(change.map(|row| dot3(row, *way)), *way)
 }

@@ -123,8 +123,8 @@ impl SubstepRule {
         }
     }
 
-    /// The fraction of its full stiffness that a liquid with a surface, or gas that bodies press on, has in a frame of `substeps` substeps. The frame
-    /// before had `last` substeps and the fraction `before`.
+    /// The fraction of its full stiffness that a liquid with a surface, or gas that bodies press on, has in a frame of
+    /// `substeps` substeps. The frame before had `last` substeps and the fraction `before`.
     ///
     /// Stiffness is proportional to 1/dt^2. If it jumped with the number of substeps, a compressed liquid would release
     /// more than its stored energy, up to 4 % of the energy of a drop that is drawn out; so it keeps its value and

@@ -196,8 +196,7 @@ impl World {
         };
         let (down, is_gas) = (self.down(), |phase| phase == Phase::Gas);
         let width = self.survey(down.perp(), is_gas).depth();
-        let gases = parts.materials.iter().filter(|material| is_gas(material.phase));
-        let lightest = gases.map(|gas| gas.density).fold(f64::INFINITY, f64::min);
+        let lightest = self.lightest(is_gas);
         match rigid.spans(wide(down.perp()), width) {
             true => rigid.weight(self.pull().length()) / (width * lightest),
             false => 0.0,
@@ -240,12 +239,17 @@ impl World {
         PressureBound { pressure, stopped: STOPPED * self.clock.speed.max(of_bodies) }
     }
 
+    /// Least density of the materials of some phases [kg/m^2]; infinite without any.
+    fn lightest(&self, counted: impl Fn(Phase) -> bool) -> f64 {
+        let materials = self.parts.materials.iter().filter(|material| counted(material.phase));
+        materials.map(|material| material.density).fold(f64::INFINITY, f64::min)
+    }
+
     /// Largest pressure of bodies over the density of the lightest fluid that carries them [m^2/s^2].
     fn body_pressure(&self) -> f64 {
         let parts = &self.parts;
         let Some(rigid) = parts.rigid.as_ref() else { return 0.0 };
-        let fluids = parts.materials.iter().filter(|material| material.phase.is_fluid());
-        let lightest = fluids.map(|fluid| fluid.density).fold(f64::INFINITY, f64::min);
+        let lightest = self.lightest(Phase::is_fluid);
         if lightest.is_finite() { rigid.pressure(f64::from(parts.gravity.length())) / lightest } else { 0.0 }
     }
 
