@@ -66,6 +66,16 @@ fn ten_boxes_dropped_out_of_line_come_to_rest() {
 }
 
 #[test]
+fn a_pyramid_of_1275_boxes_comes_to_rest_at_three_substeps() {
+    let mut world = pyramid(50, never_asleep());
+    world.substeps = 3;
+    world.run(6.0);
+    let (sunk, speed) = (49.5 - world.position(1274).y, world.fastest());
+    println!("pyramid of 50 rows, 3 substeps: top {sunk:.3} m lower, speed {speed:.1e} m/s");
+    assert!(sunk < 0.15 && speed < 0.02);
+}
+
+#[test]
 fn pyramid_of_210_boxes_stands() {
     for (name, settings, most) in [("in turn", never_asleep(), 0.02), ("at once", mirrored(), 1e-9)] {
         let mut world = pyramid(20, settings);

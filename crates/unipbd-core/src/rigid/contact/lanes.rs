@@ -11,9 +11,12 @@ use std::ops::Range;
 #[derive(Clone, Copy)]
 pub(super) enum Rule {
     /// One iteration of normal impulses, friction and rolling resistance.
-    Solve,
-    /// The same, from the last block to the first.
-    SolveBackward,
+    Solve {
+        /// From the last block to the first.
+        backward: bool,
+        /// Factor of the change of normal impulses and friction: 1 solves each contact, more than 1 over-relaxes it.
+        relaxation: f64,
+    },
     /// Moves bodies out of each other, without a trace in the impulses; with twice the gravity times the square of the
     /// substep \[m].
     Separate(Depenetration, f64),
@@ -42,14 +45,14 @@ impl Kernel for Pass<'_> {
     #[inline(always)]
     fn run<W: Wide>(self, lanes: W) {
         match self.rule {
-            Rule::Solve => {
+            Rule::Solve { backward: false, relaxation } => {
                 for block in self.blocks {
-                    solve(lanes, block, self.motion);
+                    solve(lanes, block, self.motion, relaxation);
                 }
             }
-            Rule::SolveBackward => {
+            Rule::Solve { backward: true, relaxation } => {
                 for block in self.blocks.iter_mut().rev() {
-                    solve(lanes, block, self.motion);
+                    solve(lanes, block, self.motion, relaxation);
                 }
             }
             Rule::Separate(how, fall) => {
@@ -166,14 +169,20 @@ fn within<W: Wide>(value: W, limit: W) -> W {
     value.smaller(limit).larger(limit.like(0.0) - limit)
 }
 
+/// A normal impulse whose change is taken this many times.
+#[inline(always)]
+fn relaxed<W: Wide>(now: W, old: W, relaxation: W) -> W {
+    (old + relaxation * (now - old)).larger(old.like(0.0))
+}
+
 /// One iteration of a block.
 #[inline(always)]
-fn solve<W: Wide>(lanes: W, block: &mut Block, motion: &mut [Exact]) {
+fn solve<W: Wide>(lanes: W, block: &mut Block, motion: &mut [Exact], relaxation: f64) {
     let (mut a, mut b) = (gather(lanes, motion, &block.bodies[0]), gather(lanes, motion, &block.bodies[1]));
     let lines = Lines::of(lanes, block);
     let old = exacts(lanes, &block.normal_impulse);
     let zero = lanes.like(0.0);
-    once(block, &lines, (&mut a, &mut b), zero);
+    once(block, &lines, (&mut a, &mut b), (zero, relaxation));
     // Friction of a tall body turns it: a contact without impulses to start from needs a few rounds for both.
     let idle = zero.where_below(old[0].larger(old[1]), zero, lanes.reals(&block.turns));
     let now = exacts(lanes, &block.normal_impulse);
@@ -181,7 +190,7 @@ fn solve<W: Wide>(lanes: W, block: &mut Block, motion: &mut [Exact]) {
     if is_new.to_array() != [0.0; WIDE] {
         let others = zero.like(1.0) - is_new;
         for _ in 1..ROUNDS {
-            once(block, &lines, (&mut a, &mut b), others);
+            once(block, &lines, (&mut a, &mut b), (others, 1.0));
         }
     }
     scatter(motion, &block.bodies[0], a);
@@ -190,7 +199,12 @@ fn solve<W: Wide>(lanes: W, block: &mut Block, motion: &mut [Exact]) {
 
 /// Solves the lanes where `done` is 0.
 #[inline(always)]
-fn once<W: Wide>(block: &mut Block, lines: &Lines<W>, (a, b): (&mut Motion<W>, &mut Motion<W>), done: W) {
+fn once<W: Wide>(
+    block: &mut Block,
+    lines: &Lines<W>,
+    (a, b): (&mut Motion<W>, &mut Motion<W>),
+    (done, relaxation): (W, f64),
+) {
     let (gap, mass) = (reals(done, &block.gap), reals(done, &block.tangent));
     let (tangent_a, tangent_b) = (reals(done, &block.tangent_a), reals(done, &block.tangent_b));
     let (friction, belt) = (done.reals(&block.friction), done.reals(&block.belt));
@@ -198,6 +212,8 @@ fn once<W: Wide>(block: &mut Block, lines: &Lines<W>, (a, b): (&mut Motion<W>, &
     let zero = done.like(0.0);
     let openings = lines.openings(a, b);
     let pressed = lines.press([openings[0] + gap[0].larger(zero), openings[1] + gap[1].larger(zero)], old);
+    let relaxation = done.like(relaxation);
+    let pressed = [relaxed(pressed[0], old[0], relaxation), relaxed(pressed[1], old[1], relaxation)];
     let normal = where_least(zero, done, pressed, old);
     let change = [normal[0] - old[0], normal[1] - old[1]];
     let turns = [
@@ -210,8 +226,10 @@ fn once<W: Wide>(block: &mut Block, lines: &Lines<W>, (a, b): (&mut Motion<W>, &
     let along = (a[1] - b[1]) * lines.normal[0] - (a[0] - b[0]) * lines.normal[1] - belt;
     let part = zero.where_below(total, zero.like(1.0) / total, zero);
     let held = [
-        old_tangent[0] - (along + tangent_a[0] * turned_a - tangent_b[0] * turned_b) * (normal[0] * part) * mass[0],
-        old_tangent[1] - (along + tangent_a[1] * turned_a - tangent_b[1] * turned_b) * (normal[1] * part) * mass[1],
+        old_tangent[0]
+            - relaxation * (along + tangent_a[0] * turned_a - tangent_b[0] * turned_b) * (normal[0] * part) * mass[0],
+        old_tangent[1]
+            - relaxation * (along + tangent_a[1] * turned_a - tangent_b[1] * turned_b) * (normal[1] * part) * mass[1],
     ];
     let held = [within(held[0], friction * normal[0]), within(held[1], friction * normal[1])];
     let tangent = where_least(zero, done, held, old_tangent);

@@ -278,18 +278,19 @@ impl Contact {
         (a.linear - b.linear).dot(self.tangent()) + point.tangent_a * a.angular - point.tangent_b * b.angular
     }
 
-    /// One iteration: no approach beyond the gap, friction inside Coulomb's cone, rolling resistance.
-    pub fn solve(&mut self, displacements: &[Twist]) -> Push {
+    /// One iteration: no approach beyond the gap, friction inside Coulomb's cone, rolling resistance. The changes of normal
+    /// impulses and friction are taken `relaxation` times.
+    pub fn solve(&mut self, displacements: &[Twist], relaxation: f64) -> Push {
         let motion = (entry(displacements, self.a), entry(displacements, self.b));
         // Friction of a tall body turns it: a contact without impulses to start from needs a few rounds for both.
         let is_new = self.count == 2 && !self.is_pressed() && self.effective_mass.friction > 0.0;
-        if is_new { self.solve_anew(motion) } else { self.solve_once(motion) }
+        if is_new { self.solve_anew(motion, relaxation) } else { self.solve_once(motion, relaxation) }
     }
 
-    fn solve_anew(&mut self, mut motion: (Twist, Twist)) -> Push {
+    fn solve_anew(&mut self, mut motion: (Twist, Twist), relaxation: f64) -> Push {
         let mut push = Push::default();
-        for _ in 0..ROUNDS {
-            let step = self.solve_once(motion);
+        for round in 0..ROUNDS {
+            let step = self.solve_once(motion, if round == 0 { relaxation } else { 1.0 });
             push += step;
             let (turns_a, turns_b) = self.effective_mass.turning;
             motion.0.linear += step.linear * self.effective_mass.linear;
@@ -299,14 +300,15 @@ impl Contact {
         push
     }
 
-    fn solve_once(&mut self, motion: (Twist, Twist)) -> Push {
+    fn solve_once(&mut self, motion: (Twist, Twist), relaxation: f64) -> Push {
         let old = self.points.map(|point| point.normal_impulse);
         let Some(pressed) = self.press(motion, old) else { return Push::default() };
+        let pressed = self.relaxed(pressed, old, relaxation);
         let mut push = Push::default();
         for (k, old) in old.into_iter().enumerate().take(self.count as usize) {
             let (point, normal) = (self.points[k], pressed.normal[k]);
             let limit = self.effective_mass.friction * normal;
-            let tangent = (point.tangent_impulse - self.stop(k, &pressed)).clamp(-limit, limit);
+            let tangent = (point.tangent_impulse - relaxation * self.stop(k, &pressed)).clamp(-limit, limit);
             self.add_push(&mut push, &point, normal - old, tangent - point.tangent_impulse);
             (self.points[k].normal_impulse, self.points[k].tangent_impulse) = (normal, tangent);
         }
@@ -327,6 +329,13 @@ impl Contact {
         }
         let normal = complementarity::solve(&self.effective_mass.normal, excess, old, [0.0; 2]);
         Some(Pressed { a, b, normal, turned: self.turned_by([normal[0] - old[0], normal[1] - old[1]]) })
+    }
+
+    /// Normal impulses whose changes are taken this many times.
+    fn relaxed(&self, pressed: Pressed, old: [f64; 2], relaxation: f64) -> Pressed {
+        let relaxed = |now: f64, old: f64| (old + relaxation * (now - old)).max(0.0);
+        let normal = [relaxed(pressed.normal[0], old[0]), relaxed(pressed.normal[1], old[1])];
+        Pressed { normal, turned: self.turned_by([normal[0] - old[0], normal[1] - old[1]]), ..pressed }
     }
 
     /// Rotation of the two bodies by changes of the normal impulses, with the split masses.

@@ -1,9 +1,9 @@
 //! Contacts and joints of rigid bodies, solved on the displacements of a substep.
 //!
 //! Contacts are constraints on the displacement u of a substep, warm started with the impulses of the
-//! last one and solved by Gauss-Seidel sweeps, forwards and backwards from substep to substep; or by Jacobi sweeps in which a body's
-//! mass is split among its contacts (Tonge et al. 2012, "Mass splitting for jitter-free parallel rigid body
-//! simulation"). Overlap never becomes velocity: a separate pass removes it from the positions. A substep calls, in
+//! last one and solved by Gauss-Seidel sweeps, there and back, over-relaxed but for the last two; or by Jacobi sweeps in
+//! which a body's mass is split among its contacts (Tonge et al. 2012, "Mass splitting for jitter-free parallel rigid
+//! body simulation"). Overlap never becomes velocity: a separate pass removes it from the positions. A substep calls, in
 //! this order:
 //!
 //! 1. [`Contacts::begin_substep`] finds the contacts, once per frame unless a body leaves its prediction,
@@ -112,9 +112,11 @@ pub struct Contacts {
     /// Whether a contact rebounds in this substep.
     #[serde(skip)]
     rebounding: bool,
-    /// Whether sweeps of this substep go through the contacts from the last to the first. Stacks need both directions;
-    /// in turn within a substep they undo a part of each other.
+    /// Whether the first sweep of this substep goes through the contacts from the last to the first.
     backward: bool,
+    /// Sweeps of this substep so far.
+    #[serde(skip)]
+    swept: u32,
     dt: f64,
     #[serde(skip)]
     moment: StepContext,
@@ -173,6 +175,7 @@ impl Contacts {
             wall_names: walls.iter().map(|wall| wall.name.clone()).collect(),
             rebounding: false,
             backward: false,
+            swept: 0,
             dt: 0.0,
             moment: StepContext::default(),
             warm_factor: 1.0,

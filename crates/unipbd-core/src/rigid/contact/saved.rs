@@ -40,6 +40,7 @@ impl Contacts {
             wall_names: self.wall_names.clone(),
             rebounding: false,
             backward: saved.backward,
+            swept: 0,
             dt: saved.dt,
             settings: self.settings,
             once: self.once,

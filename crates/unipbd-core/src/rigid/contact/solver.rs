@@ -18,7 +18,7 @@ pub(crate) trait ContactSolver: Send + Sync {
 
     /// One iteration of all contacts and joints on the displacements of the substep, where they act at once.
     fn sweep(&self, sweep: Sweep<'_>) {
-        sweep.run(|contact, _, displacements| contact.solve(displacements), Linked::solve);
+        sweep.run(|contact, _, displacements| contact.solve(displacements, 1.0), Linked::solve);
     }
 
     /// Writes the inverse masses for contacts, if they differ from those of the bodies.

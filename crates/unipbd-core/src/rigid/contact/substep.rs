@@ -11,6 +11,10 @@ use super::sweep::{Order, Sweep, apply, turn_joints};
 use crate::math::Vector64;
 use crate::rigid::{Bodies, InverseMass};
 
+/// Over-relaxation of Gauss-Seidel sweeps. Measured on a pyramid of 5,050 boxes: with it, the pyramid comes to rest at 3
+/// substeps of 2 iterations; without, it sways for good at 6 and falls at 3. From 1.9 on a stack of 20 boxes jitters.
+const OVER_RELAXATION: f64 = 1.8;
+
 impl Contacts {
     /// Finds the contacts at the start of a substep and wakes the bodies that are touched.
     pub fn begin_substep(&mut self, bodies: &mut Bodies, dt: f64, gravity: Vector64) {
@@ -19,6 +23,7 @@ impl Contacts {
         self.warm_factor = (dt / last_dt) * (dt / last_dt);
         self.dt = dt;
         self.backward = !self.backward;
+        self.swept = 0;
         self.gravity = gravity.length();
         self.up = -gravity.normalize_or_zero();
         self.islands.resize(bodies.len());
@@ -168,30 +173,38 @@ impl Contacts {
         }
     }
 
-    /// Sweeps in the direction of the substep; the contacts get their impulses at its end.
+    /// Sweeps to and fro; the contacts get their impulses at the end.
     fn iterate_in_turn(&mut self, bodies: &mut Bodies) {
         let sweeps = self.sweeps();
-        let (masses, motion) = (&bodies.inverse_masses, &mut bodies.displacements[..]);
-        let (joints, blocks) = (&mut self.joints[..], &mut self.blocks);
-        blocks.take_motion(motion);
+        self.blocks.take_motion(&bodies.displacements);
         for _ in 0..sweeps {
-            let mut move_joints = |blocks: &mut Blocks| {
-                if !joints.is_empty() {
-                    blocks.give_motion(motion);
-                    turn_joints(joints, masses, motion, Linked::solve);
-                    blocks.take_motion(motion);
-                }
-            };
-            if self.backward {
-                move_joints(blocks);
-                blocks.pass(Rule::SolveBackward);
-            } else {
-                blocks.pass(Rule::Solve);
-                move_joints(blocks);
-            }
+            let how = way_of_sweep(self.swept, 2 * sweeps);
+            self.sweep_in_turn(bodies, how);
+            self.swept += 1;
         }
-        blocks.give_motion(motion);
-        blocks.live = true;
+        self.blocks.give_motion(&mut bodies.displacements);
+        self.blocks.live = true;
+    }
+
+    /// One sweep over the motion that the blocks hold; joints come last in one direction, first in the other.
+    fn sweep_in_turn(&mut self, bodies: &mut Bodies, (back, relaxation): (bool, f64)) {
+        let backward = self.backward != back;
+        if backward {
+            self.turn_joints_of_blocks(bodies);
+        }
+        self.blocks.pass(Rule::Solve { backward, relaxation });
+        if !backward {
+            self.turn_joints_of_blocks(bodies);
+        }
+    }
+
+    fn turn_joints_of_blocks(&mut self, bodies: &mut Bodies) {
+        if !self.joints.is_empty() {
+            let motion = &mut bodies.displacements[..];
+            self.blocks.give_motion(motion);
+            turn_joints(&mut self.joints, &bodies.inverse_masses, motion, Linked::solve);
+            self.blocks.take_motion(motion);
+        }
     }
 
     /// Gives the contacts the impulses that they have so far in this substep.
@@ -199,6 +212,17 @@ impl Contacts {
         let in_lanes = self.in_lanes();
         self.blocks.give_back(self.narrow_phase.rows().0, in_lanes);
     }
+}
+
+/// Whether a sweep goes against the direction of the substep, and its relaxation.
+///
+/// With warm starts, a mode of the approach of which the sweeps leave the part s is multiplied from substep to substep by
+/// the roots of z^2 - 2 s z + s = 0: it grows for s < -1/3. Sweeps come in pairs, there and back, since these leave
+/// parts of 0 to 1 (symmetric successive over-relaxation: Young 1971, "Iterative Solution of Large Linear Systems"). All
+/// pairs but the last are over-relaxed: loads pass through high stacks in fewer sweeps, and slow modes fade, by
+/// sqrt(s) per substep.
+fn way_of_sweep(sweep: u32, all: u32) -> (bool, f64) {
+    (sweep % 2 == 1, if sweep + 2 < all { OVER_RELAXATION } else { 1.0 })
 }
 
 #[cfg(test)]
@@ -243,13 +267,15 @@ mod tests {
 
     /// Iterations contact by contact.
     fn iterate_alone(contacts: &mut Contacts, bodies: &mut Bodies) {
-        for _ in 0..contacts.settings.iterations {
-            let backward = contacts.backward;
+        let sweeps = contacts.settings.iterations;
+        for sweep in 0..sweeps {
+            let (back, relaxation) = way_of_sweep(sweep, 2 * sweeps);
+            let backward = contacts.backward != back;
             let rows = contacts.narrow_phase.rows().0;
             let count = rows.len();
             for k in 0..count {
                 let contact = &mut rows[if backward { count - 1 - k } else { k }];
-                let push = contact.solve(&bodies.displacements);
+                let push = contact.solve(&bodies.displacements, relaxation);
                 apply((contact.a, contact.b), &push, &bodies.inverse_masses, &mut bodies.displacements);
             }
         }
