@@ -11,6 +11,7 @@ use super::contact_block::{Block, Exact, FAR, Lane};
 use super::contact_cache::ContactCache;
 use super::manifold::Contact;
 use super::opening::{Open, Start};
+use super::relaxation::over;
 use super::step_context::StepContext;
 use crate::math::Real;
 use crate::parallel::Parallelism;
@@ -163,11 +164,11 @@ impl Blocks {
     }
 
     /// Fills the lanes with contacts that were prepared one by one, block by block.
-    pub fn fill(&mut self, contacts: &[Contact], masses: &[InverseMass], sizes: &[f64]) {
+    pub fn fill(&mut self, contacts: &[Contact], (masses, sizes): (&[InverseMass], &[f64]), fall: f64) {
         for (block, holders) in self.all.iter_mut().zip(&self.holders) {
             for (lane, &holder) in holders.iter().enumerate().filter(|(_, holder)| **holder != NONE) {
                 block.take(lane, &contacts[holder as usize], masses, sizes);
-                contacts[holder as usize].fill(block, lane);
+                contacts[holder as usize].fill(block, lane, fall);
             }
             block.rolls = any(&block.rolling_arm);
         }
@@ -254,7 +255,8 @@ fn rows(motion: &[Twist]) -> impl Iterator<Item = Exact> + '_ {
 
 impl Contact {
     /// Fills a lane with what was prepared.
-    fn fill(&self, block: &mut Block, lane: usize) {
+    fn fill(&self, block: &mut Block, lane: usize, fall: f64) {
+        let size = f64::from(block.size[lane]);
         let mut set = |of: fn(&mut Block) -> &mut Lane, value: f64| of(block)[lane] = value as Real;
         set(|block| &mut block.normal[0], self.normal.x);
         set(|block| &mut block.normal[1], self.normal.y);
@@ -262,6 +264,7 @@ impl Contact {
         let (response, inverse, alone) = mass.normal.matrices();
         set(|block| &mut block.friction, mass.friction);
         set(|block| &mut block.belt, mass.belt);
+        set(|block| &mut block.over, over(self.is_pressed(), fall, size));
         set(|block| &mut block.turns, if self.points().len() == 2 && mass.friction > 0.0 { 1.0 } else { 0.0 });
         for k in 0..3 {
             (block.response[k][lane], block.inverse[k][lane]) = (response[k] as Real, inverse[k] as Real);

@@ -37,6 +37,8 @@ pub(super) struct Block {
     pub friction: Lane,
     /// 1 for two points with friction.
     pub turns: Lane,
+    /// Over-relaxation beyond 1.
+    pub over: Lane,
     /// Way of moving surfaces along the tangent \[m].
     pub belt: Lane,
     /// Size of the smaller body \[m].

@@ -14,8 +14,8 @@ pub(super) enum Rule {
     Solve {
         /// From the last block to the first.
         backward: bool,
-        /// Factor of the change of normal impulses and friction: 1 solves each contact, more than 1 over-relaxes it.
-        relaxation: f64,
+        /// Whether contacts are over-relaxed.
+        over_relaxed: bool,
     },
     /// Moves bodies out of each other, without a trace in the impulses; with twice the gravity times the square of the
     /// substep \[m].
@@ -45,14 +45,14 @@ impl Kernel for Pass<'_> {
     #[inline(always)]
     fn run<W: Wide>(self, lanes: W) {
         match self.rule {
-            Rule::Solve { backward: false, relaxation } => {
+            Rule::Solve { backward: false, over_relaxed } => {
                 for block in self.blocks {
-                    solve(lanes, block, self.motion, relaxation);
+                    solve(lanes, block, self.motion, if over_relaxed { 1.0 } else { 0.0 });
                 }
             }
-            Rule::Solve { backward: true, relaxation } => {
+            Rule::Solve { backward: true, over_relaxed } => {
                 for block in self.blocks.iter_mut().rev() {
-                    solve(lanes, block, self.motion, relaxation);
+                    solve(lanes, block, self.motion, if over_relaxed { 1.0 } else { 0.0 });
                 }
             }
             Rule::Separate(how, fall) => {
@@ -175,14 +175,14 @@ fn relaxed<W: Wide>(now: W, old: W, relaxation: W) -> W {
     (old + relaxation * (now - old)).larger(old.like(0.0))
 }
 
-/// One iteration of a block.
+/// One iteration of a block, with this part of its over-relaxation.
 #[inline(always)]
-fn solve<W: Wide>(lanes: W, block: &mut Block, motion: &mut [Exact], relaxation: f64) {
+fn solve<W: Wide>(lanes: W, block: &mut Block, motion: &mut [Exact], over: f64) {
     let (mut a, mut b) = (gather(lanes, motion, &block.bodies[0]), gather(lanes, motion, &block.bodies[1]));
     let lines = Lines::of(lanes, block);
     let old = exacts(lanes, &block.normal_impulse);
     let zero = lanes.like(0.0);
-    once(block, &lines, (&mut a, &mut b), (zero, relaxation));
+    once(block, &lines, (&mut a, &mut b), (zero, over));
     // Friction of a tall body turns it: a contact without impulses to start from needs a few rounds for both.
     let idle = zero.where_below(old[0].larger(old[1]), zero, lanes.reals(&block.turns));
     let now = exacts(lanes, &block.normal_impulse);
@@ -190,7 +190,7 @@ fn solve<W: Wide>(lanes: W, block: &mut Block, motion: &mut [Exact], relaxation:
     if is_new.to_array() != [0.0; WIDE] {
         let others = zero.like(1.0) - is_new;
         for _ in 1..ROUNDS {
-            once(block, &lines, (&mut a, &mut b), (others, 1.0));
+            once(block, &lines, (&mut a, &mut b), (others, 0.0));
         }
     }
     scatter(motion, &block.bodies[0], a);
@@ -203,7 +203,7 @@ fn once<W: Wide>(
     block: &mut Block,
     lines: &Lines<W>,
     (a, b): (&mut Motion<W>, &mut Motion<W>),
-    (done, relaxation): (W, f64),
+    (done, over): (W, f64),
 ) {
     let (gap, mass) = (reals(done, &block.gap), reals(done, &block.tangent));
     let (tangent_a, tangent_b) = (reals(done, &block.tangent_a), reals(done, &block.tangent_b));
@@ -212,7 +212,7 @@ fn once<W: Wide>(
     let zero = done.like(0.0);
     let openings = lines.openings(a, b);
     let pressed = lines.press([openings[0] + gap[0].larger(zero), openings[1] + gap[1].larger(zero)], old);
-    let relaxation = done.like(relaxation);
+    let relaxation = done.like(1.0) + done.reals(&block.over) * done.like(over);
     let pressed = [relaxed(pressed[0], old[0], relaxation), relaxed(pressed[1], old[1], relaxation)];
     let normal = where_least(zero, done, pressed, old);
     let change = [normal[0] - old[0], normal[1] - old[1]];

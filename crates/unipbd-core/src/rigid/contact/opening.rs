@@ -3,6 +3,7 @@
 
 use super::anchored::Anchored;
 use super::contact_block::{Block, Exact, FAR};
+use super::relaxation::over_in_lanes;
 use super::step_context::StepContext;
 use crate::simd::wide::{Kernel, Wide};
 
@@ -25,8 +26,10 @@ pub(super) struct Open<'a> {
 impl Kernel for Open<'_> {
     #[inline(always)]
     fn run<W: Wide>(self, lanes: W) {
+        let fall = self.moment.fall();
         for (block, anchored) in self.blocks.iter_mut().zip(self.anchored) {
             measure(lanes, block, anchored, self.places, self.kept);
+            block.over = over_in_lanes(lanes, block, fall).to_reals();
             prepare(lanes, block, anchored);
             let speed = lanes.reals(&anchored.speed);
             block.belt = (speed * speed.like(self.moment.dt)).to_reals();

@@ -13,3 +13,10 @@ pub(super) struct StepContext {
     /// Sliding speed below which a contact sticks [m/s].
     pub slow: f64,
 }
+
+impl StepContext {
+    /// What gravity adds to the displacement of a substep \[m].
+    pub fn fall(&self) -> f64 {
+        self.gravity.length() * self.dt * self.dt
+    }
+}

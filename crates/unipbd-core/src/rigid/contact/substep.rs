@@ -1,19 +1,15 @@
 //! A substep up to its iterations: search, warm start, sweeps.
 
 use super::Contacts;
-use super::blocks::Blocks;
 use super::bounds::NONE;
 use super::lanes::Rule;
 use super::linked::Linked;
+use super::relaxation::Way;
 use super::seen;
 use super::step_context::StepContext;
 use super::sweep::{Order, Sweep, apply, turn_joints};
 use crate::math::Vector64;
 use crate::rigid::{Bodies, InverseMass};
-
-/// Over-relaxation of Gauss-Seidel sweeps. Measured on a pyramid of 5,050 boxes: with it, the pyramid comes to rest at 3
-/// substeps of 2 iterations; without, it sways for good at 6 and falls at 3. From 1.9 on a stack of 20 boxes jitters.
-const OVER_RELAXATION: f64 = 1.8;
 
 impl Contacts {
     /// Finds the contacts at the start of a substep and wakes the bodies that are touched.
@@ -96,7 +92,7 @@ impl Contacts {
                     apply((contact.a, contact.b), &contact.kept_push(), masses, &mut motion);
                 }
             });
-            self.blocks.fill(self.narrow_phase.contacts(), masses, &bodies.sizes);
+            self.blocks.fill(self.narrow_phase.contacts(), (masses, &bodies.sizes), self.moment.fall());
         }
         turn_joints(&mut self.joints, masses, &mut motion, |linked, _| linked.start());
         bodies.displacements = motion;
@@ -178,8 +174,7 @@ impl Contacts {
         let sweeps = self.sweeps();
         self.blocks.take_motion(&bodies.displacements);
         for _ in 0..sweeps {
-            let how = way_of_sweep(self.swept, 2 * sweeps);
-            self.sweep_in_turn(bodies, how);
+            self.sweep_in_turn(bodies, Way::of(self.swept, 2 * sweeps));
             self.swept += 1;
         }
         self.blocks.give_motion(&mut bodies.displacements);
@@ -187,12 +182,12 @@ impl Contacts {
     }
 
     /// One sweep over the motion that the blocks hold; joints come last in one direction, first in the other.
-    fn sweep_in_turn(&mut self, bodies: &mut Bodies, (back, relaxation): (bool, f64)) {
-        let backward = self.backward != back;
+    fn sweep_in_turn(&mut self, bodies: &mut Bodies, way: Way) {
+        let backward = self.backward != way.back;
         if backward {
             self.turn_joints_of_blocks(bodies);
         }
-        self.blocks.pass(Rule::Solve { backward, relaxation });
+        self.blocks.pass(Rule::Solve { backward, over_relaxed: way.over_relaxed });
         if !backward {
             self.turn_joints_of_blocks(bodies);
         }
@@ -214,21 +209,11 @@ impl Contacts {
     }
 }
 
-/// Whether a sweep goes against the direction of the substep, and its relaxation.
-///
-/// With warm starts, a mode of the approach of which the sweeps leave the part s is multiplied from substep to substep by
-/// the roots of z^2 - 2 s z + s = 0: it grows for s < -1/3. Sweeps come in pairs, there and back, since these leave
-/// parts of 0 to 1 (symmetric successive over-relaxation: Young 1971, "Iterative Solution of Large Linear Systems"). All
-/// pairs but the last are over-relaxed: loads pass through high stacks in fewer sweeps, and slow modes fade, by
-/// sqrt(s) per substep.
-fn way_of_sweep(sweep: u32, all: u32) -> (bool, f64) {
-    (sweep % 2 == 1, if sweep + 2 < all { OVER_RELAXATION } else { 1.0 })
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::rigid::contact::ContactSettings;
+    use crate::rigid::contact::relaxation::over;
+    use crate::rigid::contact::{Contact, ContactSettings};
     use crate::rigid::{BodySpec, Pose, Surface, Wall};
     use crate::shapes::Shape;
 
@@ -268,13 +253,20 @@ mod tests {
     /// Iterations contact by contact.
     fn iterate_alone(contacts: &mut Contacts, bodies: &mut Bodies) {
         let sweeps = contacts.settings.iterations;
+        let (fall, sizes) = (contacts.moment.fall(), &bodies.sizes);
+        let size = |contact: &Contact| sizes.get(contact.b as usize).map_or(f64::INFINITY, |size| *size);
+        let over_of =
+            |contact: &Contact| over(contact.is_pressed(), fall, sizes[contact.a as usize].min(size(contact)));
+        let over: Vec<f64> = contacts.narrow_phase.contacts().iter().map(over_of).collect();
         for sweep in 0..sweeps {
-            let (back, relaxation) = way_of_sweep(sweep, 2 * sweeps);
-            let backward = contacts.backward != back;
+            let way = Way::of(sweep, 2 * sweeps);
+            let backward = contacts.backward != way.back;
             let rows = contacts.narrow_phase.rows().0;
             let count = rows.len();
             for k in 0..count {
-                let contact = &mut rows[if backward { count - 1 - k } else { k }];
+                let at = if backward { count - 1 - k } else { k };
+                let contact = &mut rows[at];
+                let relaxation = if way.over_relaxed { 1.0 + over[at] } else { 1.0 };
                 let push = contact.solve(&bodies.displacements, relaxation);
                 apply((contact.a, contact.b), &push, &bodies.inverse_masses, &mut bodies.displacements);
             }
