@@ -1,6 +1,5 @@
 //! The linear system of the grid: liquid cells, couplings between cells, and right sides.
 
-use super::components::Components;
 use super::couplings::Couplings;
 use super::flow::Flow;
 use super::lattice::Lattice;
@@ -30,9 +29,12 @@ const POROUS: Real = 0.98;
 const POROUS_RELAXATION: Real = 0.1;
 /// ...if the fill is uniform around the cell: near a free surface the fill of opposite neighbours differs by more...
 const SLANTED: Real = 0.6;
-/// ...and its particles are not compressed already: a liquid drawn out has a low fill without pores. Nor is the gap below
-/// a float a pore: closed, it pumps the float, at 0.06 of sqrt(g b), for 0.009 with a density ratio of 0.01 and 24 dx.
+/// ...and its particles are not compressed already: a liquid drawn out has a low fill without pores.
 const COMPRESSED: Real = 0.005;
+/// Beside bodies that the fluid outweighs by more than this, nothing is contracted: the gap below a float of a hundredth
+/// of its density, closed again and again, pumps it, at 0.06 of sqrt(g b), for 0.009 without. Floats of a twentieth
+/// would lie 0.4 dx too high without.
+const FEATHER: Real = 50.0;
 
 /// The system of one substep, by cell.
 #[derive(Default)]
@@ -50,6 +52,8 @@ pub(super) struct System {
     pub bare: Vec<Real>,
     /// Cells inside bodies; empty without bodies.
     masked: Vec<bool>,
+    /// Cells at bodies that a contraction would pump; empty without any.
+    pumping: Vec<bool>,
     /// Cells with changed openings since the last substep.
     pub touched: Vec<u32>,
     /// Negative divergence of the velocity in each cell: the inflow [m/s].
@@ -87,6 +91,7 @@ impl System {
             column.resize(cells, 1.0);
         }
         self.masked.clear();
+        self.pumping.clear();
         self.touched.clear();
     }
 
@@ -165,8 +170,8 @@ impl System {
     }
 
     /// Finds the cells inside bodies from the couplings of the fluid, and those at bodies in the air, which no fluid
-    /// reaches and whose pressure is zero; couples the cells a body covers as if it were fluid of its density: for the
-    /// preconditioner.
+    /// reaches and whose pressure is zero, and those at the lightest bodies; couples the cells a body covers as if it were
+    /// fluid of its density: for the preconditioner.
     pub fn mask(
         &mut self,
         (solids, fields): (&Solids, &Fields),
@@ -175,8 +180,16 @@ impl System {
         out: &mut Couplings,
     ) {
         self.masked.clear();
+        self.pumping.clear();
         if !solids.any() {
             return;
+        }
+        let feathers = || solids.solids.iter().filter(|solid| solid.lightness[1] > FEATHER);
+        if feathers().next().is_some() {
+            self.pumping.resize(self.depth.len(), false);
+        }
+        for face in feathers().flat_map(|solid| solids.faces_of(solid)) {
+            [face.cell as usize, face.back(stride)].into_iter().for_each(|cell| self.pumping[cell] = true);
         }
         self.masked.resize(self.depth.len(), false);
         for &cell in &self.touched {
@@ -270,7 +283,7 @@ impl System {
         // Straight steps along curved paths compress the fluid: the velocities that end the substep at the density of its start
         // make the step one of second order, as in the method of Verlet.
         let (depth, curving) = (&self.depth, dt / lattice.cell);
-        let (open, bare, masked) = (&self.open, &self.bare, &self.masked);
+        let (open, bare, masked, pumping) = (&self.open, &self.bare, &self.masked, &self.pumping);
         let flow = Flow { u: &self.along_x, v: &self.along_y, stride: lattice.stride() };
         spans.each2(&mut self.divergence, &mut self.excess, parallelism, |first, divergence, excess| {
             for k in 0..divergence.len() {
@@ -287,7 +300,7 @@ impl System {
                     let fill = |cell: usize| fields.centre[cell][1] * openings.inverse[cell];
                     let [left, right, lower, upper] = flow.neighbors(cell).map(fill);
                     let uniform = (left - right).abs() + (lower - upper).abs() < SLANTED;
-                    if uniform && error < COMPRESSED && bare[cell] == 1.0 {
+                    if uniform && error < COMPRESSED && !pumping.get(cell).is_some_and(|&pumps| pumps) {
                         excess[k] += POROUS_RELAXATION * lattice.cell * smaller(fill(cell) - POROUS, 0.0);
                     }
                 }
@@ -310,6 +323,7 @@ impl System {
             + held_by(&[&self.pressure, &self.potential, &self.bare])
             + held_by(&[&self.open[0], &self.open[1], &self.ease[0], &self.ease[1]])
             + held(&self.masked)
+            + held(&self.pumping)
             + held(&self.touched)
             + self.faces.iter().map(held).sum::<usize>()
     }
