@@ -103,10 +103,9 @@ pub const NOTES: &[(&str, &str)] = &[
      before, waves lost the more, the more substeps there were. Faces closed by walls must be felt like the next ones away \
      from them, else the lowest row falls. Cells within the liquid that are filled less than 0.98 are drawn together: the \
      grid would keep their pores open. Not so at bodies of less than a fiftieth of the density: the gap below a box of a \
-     hundredth, 24 dx wide, closed again and again, pumped it, at 0.06 of sqrt(g b), for 0.009 now. Cells that lie \
-     within a wall but for a corner hold no particle, and are as deep as the cell they open into. As air they drew water \
-     in: a disc sunk in water at rest stirred it at 1.0 dx/s, for 0.05 now, and was lifted by 3 % too much, and a full \
-     ring fell into them.\n\n\
+     hundredth, 24 dx wide, closed again and again, pumped it, at 0.06 of sqrt(g b), for 0.009 now. In fluids \
+     without a surface, cells that lie within a wall but for a corner hold no particle, and are as deep as the cell they \
+     open into: as air they let a full ring fall into them, and a disc in it was let go 8 % too slowly at 12 dx.\n\n\
      Its pressures are those of the grid and of the multipliers added up: read from the momentum of pairs, as without \
      a grid, they come out 5 to 11 % low, since the grid pushes smoothly whatever the arrangement. The target \
      compression bounds the way of a substep alone (0.8 dx at 1 %, as its root; 0.5 dx for fluids that fill their domain). \

@@ -45,11 +45,11 @@ impl System {
                     *depth = larger(*depth, LEAST_DEPTH);
                 }
             });
+            self.fill_slivers(openings, lattice.stride());
         }
         if !fills && !fields.filling.is_empty() {
             self.leave_out_drips(fields, openings);
         }
-        self.fill_slivers(openings, lattice.stride());
         // Cells around the box are empty, even if particle weights reach them.
         let (stride, cells) = (lattice.stride(), lattice.len());
         let sides = (0..cells).step_by(stride).flat_map(|row| [row, row + lattice.width + 1]);
@@ -59,7 +59,8 @@ impl System {
     }
 
     /// Makes cells liquid that lie within walls but for a corner, where they open into liquid: no particle can lie in
-    /// them. As air, they would let a full ring fall into them.
+    /// them. As air, they would let a full ring fall into them. (Done for liquids with a surface too, it calms water around
+    /// sunk discs, from 1.0 to 0.05 dx/s, but shallow layers slide down ramps up to 7 % too fast.)
     fn fill_slivers(&mut self, openings: &Openings, stride: usize) {
         let (left, lower) = (&openings.left, &openings.lower);
         for cell in openings.slivers.iter().map(|&cell| cell as usize) {
