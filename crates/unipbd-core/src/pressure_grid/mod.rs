@@ -7,6 +7,7 @@
 //! solution of the same system moves particles, without their velocities, out of cells that are too full. Nothing is
 //! kept from one substep to the next: a saved run goes on bit for bit.
 
+mod air;
 mod bound;
 mod chords;
 mod components;

@@ -2,6 +2,7 @@
 
 use super::held_by;
 use super::lattice::Lattice;
+use crate::bytes::held;
 use crate::math::{Real, Vector, larger, smaller};
 use crate::parallel::Parallelism;
 use crate::walls::{Outlines, Walls};
@@ -28,6 +29,8 @@ pub(super) struct Openings {
     /// Inverse of the open fraction of the surroundings of the cell, with the weights of particles; 0 inside walls.
     pub inverse: Vec<Real>,
     corners: Vec<Real>,
+    /// Cells at the corners of which a little is open: less than [`LEAST`] of their surroundings.
+    pub slivers: Vec<u32>,
     /// Whether there are no walls among the cells.
     pub boundless: bool,
 }
@@ -106,6 +109,9 @@ impl Openings {
         for column in [&mut self.left, &mut self.lower, &mut self.inverse] {
             lattice.images.copy(column, stride);
         }
+        let inner = lattice.rows().flatten().filter(|&cell| self.inverse[cell] >= 1.0 / LEAST);
+        self.slivers.clear();
+        self.slivers.extend(inner.map(|cell| cell as u32));
         let mut inverse = lattice.rows().flat_map(|row| &self.inverse[row]);
         self.boundless = lattice.images.periods.iter().all(|&period| period > 0) && inverse.all(|&k| k == 1.0);
         true
@@ -113,7 +119,7 @@ impl Openings {
 
     /// Memory held \[bytes].
     pub fn memory_bytes(&self) -> usize {
-        held_by(&[&self.left, &self.lower, &self.inverse, &self.corners])
+        held_by(&[&self.left, &self.lower, &self.inverse, &self.corners]) + held(&self.slivers)
     }
 }
 

@@ -1,14 +1,13 @@
 //! The linear system of the grid: liquid cells, couplings between cells, and right sides.
 
-use super::components::Components;
 use super::couplings::Couplings;
 use super::flow::Flow;
 use super::lattice::Lattice;
 use super::mixture::Mixture;
 use super::openings::Openings;
 use super::solids::Solids;
-use super::spans::{BLOCK, Spans};
-use super::surface::{depth_of, ghost};
+use super::spans::Spans;
+use super::surface::ghost;
 use super::transfer::{Fields, mean};
 use super::{held_by, renew};
 use crate::bytes::held;
@@ -19,14 +18,6 @@ use crate::parallel::Parallelism;
 const HELD: Real = 1e-5;
 /// Cells whose faces are open to fluid by less than this in all are masked: they lie inside bodies.
 const MASKED: Real = 1e-3;
-/// Least depth of a cell in which fluids without a surface prevail, and the filled fraction from which on this holds:
-/// its gaps are no air.
-const LEAST_DEPTH: Real = 0.5;
-const LEAST_FILL: Real = 0.1;
-/// Where bodies cover between these parts of a cell, and fluid fills less than this part of the rest, the cell is air:
-/// drops at a wet body are no liquid around it.
-const PARTLY_BODY: [Real; 2] = [0.05, 0.7];
-const DRIPPING: Real = 0.5;
 /// Fluid beside a body counts as lighter where its particles fill less than this part of what is open...
 const SPARSE: Real = 0.75;
 /// ...down to one part in so many: else a body would be slowed by more fluid than there is.
@@ -40,6 +31,10 @@ const POROUS_RELAXATION: Real = 0.1;
 const SLANTED: Real = 0.6;
 /// ...and its particles are not compressed already: a liquid drawn out has a low fill without pores.
 const COMPRESSED: Real = 0.005;
+/// Beside bodies that the fluid outweighs by more than this, nothing is contracted: the gap below a float of a hundredth
+/// of its density, closed again and again, pumps it, at 0.06 of sqrt(g b), for 0.009 without. Floats of a twentieth
+/// would lie 0.4 dx too high without.
+const FEATHER: Real = 50.0;
 
 /// The system of one substep, by cell.
 #[derive(Default)]
@@ -54,11 +49,13 @@ pub(super) struct System {
     /// Density of the heaviest fluid over that at each left and lower face.
     pub ease: [Vec<Real>; 2],
     /// 1 less the largest covered part of the faces of each cell.
-    bare: Vec<Real>,
+    pub bare: Vec<Real>,
     /// Cells inside bodies; empty without bodies.
     masked: Vec<bool>,
+    /// Cells at bodies that a contraction would pump; empty without any.
+    pumping: Vec<bool>,
     /// Cells with changed openings since the last substep.
-    touched: Vec<u32>,
+    pub touched: Vec<u32>,
     /// Negative divergence of the velocity in each cell: the inflow [m/s].
     pub divergence: Vec<Real>,
     /// Excess fill of each cell \[m].
@@ -94,6 +91,7 @@ impl System {
             column.resize(cells, 1.0);
         }
         self.masked.clear();
+        self.pumping.clear();
         self.touched.clear();
     }
 
@@ -101,55 +99,6 @@ impl System {
     pub fn clear(&mut self, spans: &Spans) {
         [&mut self.pressure, &mut self.potential].into_iter().for_each(|column| spans.clear(column));
         self.faces.iter_mut().for_each(|faces| spans.clear(faces));
-    }
-
-    /// Reads the surface from the sums of the particles.
-    pub fn read_surface(
-        &mut self,
-        lattice: &Lattice,
-        openings: &Openings,
-        (fields, fills): (&Fields, bool),
-        parallelism: Parallelism,
-    ) {
-        parallelism.chunks(&mut self.depth, |first, depth| {
-            let (centre, _) = fields.centre[first..][..depth.len()].as_chunks::<BLOCK>();
-            let (inverse, _) = openings.inverse[first..][..depth.len()].as_chunks::<BLOCK>();
-            for ((depth, centre), inverse) in depth.as_chunks_mut::<BLOCK>().0.iter_mut().zip(centre).zip(inverse) {
-                // Most of the box may be empty.
-                let filled = centre.iter().any(|[_, weight]| *weight > 0.0);
-                let of = |k: usize| if filled { depth_of(centre[k][1] * inverse[k]) } else { -1.0 };
-                *depth = std::array::from_fn(of);
-            }
-        });
-        if fills {
-            parallelism.update(&mut self.depth, |cell, depth| {
-                let fill = fields.centre[cell][1] * openings.inverse[cell];
-                if fields.filling[cell] > 0.0 && fill > LEAST_FILL {
-                    *depth = larger(*depth, LEAST_DEPTH);
-                }
-            });
-        }
-        if !fills && !fields.filling.is_empty() {
-            self.leave_out_drips(fields, openings);
-        }
-        // Cells around the box are empty, even if particle weights reach them.
-        let (stride, cells) = (lattice.stride(), lattice.len());
-        let sides = (0..cells).step_by(stride).flat_map(|row| [row, row + lattice.width + 1]);
-        for rim in sides.chain(0..stride).chain(cells - stride..cells) {
-            self.depth[rim] = -1.0;
-        }
-    }
-
-    /// Makes cells beside bodies air that hold a few drops only.
-    fn leave_out_drips(&mut self, fields: &Fields, openings: &Openings) {
-        for cell in self.touched.iter().map(|&cell| cell as usize) {
-            let [all, free] =
-                [fields.centre[cell][1], -fields.filling[cell]].map(|filled| filled * openings.inverse[cell]);
-            let body = all - free;
-            if body > PARTLY_BODY[0] && body < PARTLY_BODY[1] && free < DRIPPING * (1.0 - body) {
-                self.depth[cell] = smaller(self.depth[cell], depth_of(free / (1.0 - body)));
-            }
-        }
     }
 
     /// Gives the images of periodic axes the depth of their cells, once the liquid was found.
@@ -201,35 +150,6 @@ impl System {
         }
     }
 
-    /// Ends suction at bodies in fluid that meets air, and at walls where air is near: fluid parts from them. A jet would
-    /// else fill the hole that it leaves by, and draw more through it: 0.75 of sqrt(2 g head), not 0.61. Elsewhere it
-    /// clings to walls, since no air can come between.
-    pub fn end_suction(
-        &mut self,
-        openings: &Openings,
-        components: &Components,
-        (spans, stride): (&Spans, usize),
-        parallelism: Parallelism,
-    ) {
-        let faces = |cell: usize| {
-            [openings.left[cell], openings.left[cell + 1], openings.lower[cell], openings.lower[cell + stride]]
-        };
-        let (bare, depth) = (&self.bare, &self.depth);
-        let is_air = |cell: usize| depth[cell] < 0.0 && faces(cell).into_iter().any(|open| open > 0.0);
-        let near_air = |cell: usize| {
-            let mut around = [cell - stride, cell, cell + stride].into_iter().flat_map(|row| row - 1..row + 2);
-            around.any(is_air)
-        };
-        let at_wall = |cell: usize| faces(cell).into_iter().any(|open| open < 1.0);
-        spans.each(&mut self.pressure, parallelism, |first, pressure| {
-            for (cell, pressure) in (first..).zip(pressure).filter(|(_, pressure)| **pressure < 0.0) {
-                if (bare[cell] < 1.0 || at_wall(cell) && near_air(cell)) && components.meets_air(cell) {
-                    *pressure = 0.0;
-                }
-            }
-        });
-    }
-
     /// Takes the covered parts of faces from the open ones.
     pub fn cover(&mut self, openings: &Openings, solids: &mut Solids, stride: usize) {
         for cell in self.touched.drain(..).map(|cell| cell as usize) {
@@ -250,8 +170,8 @@ impl System {
     }
 
     /// Finds the cells inside bodies from the couplings of the fluid, and those at bodies in the air, which no fluid
-    /// reaches and whose pressure is zero; couples the cells a body covers as if it were fluid of its density: for the
-    /// preconditioner.
+    /// reaches and whose pressure is zero, and those at the lightest bodies; couples the cells a body covers as if it were
+    /// fluid of its density: for the preconditioner.
     pub fn mask(
         &mut self,
         (solids, fields): (&Solids, &Fields),
@@ -260,8 +180,16 @@ impl System {
         out: &mut Couplings,
     ) {
         self.masked.clear();
+        self.pumping.clear();
         if !solids.any() {
             return;
+        }
+        let feathers = || solids.solids.iter().filter(|solid| solid.lightness[1] > FEATHER);
+        if feathers().next().is_some() {
+            self.pumping.resize(self.depth.len(), false);
+        }
+        for face in feathers().flat_map(|solid| solids.faces_of(solid)) {
+            [face.cell as usize, face.back(stride)].into_iter().for_each(|cell| self.pumping[cell] = true);
         }
         self.masked.resize(self.depth.len(), false);
         for &cell in &self.touched {
@@ -355,7 +283,7 @@ impl System {
         // Straight steps along curved paths compress the fluid: the velocities that end the substep at the density of its start
         // make the step one of second order, as in the method of Verlet.
         let (depth, curving) = (&self.depth, dt / lattice.cell);
-        let (open, bare, masked) = (&self.open, &self.bare, &self.masked);
+        let (open, bare, masked, pumping) = (&self.open, &self.bare, &self.masked, &self.pumping);
         let flow = Flow { u: &self.along_x, v: &self.along_y, stride: lattice.stride() };
         spans.each2(&mut self.divergence, &mut self.excess, parallelism, |first, divergence, excess| {
             for k in 0..divergence.len() {
@@ -371,7 +299,8 @@ impl System {
                     divergence[k] += curving * bare[cell] * flow.squeeze(cell);
                     let fill = |cell: usize| fields.centre[cell][1] * openings.inverse[cell];
                     let [left, right, lower, upper] = flow.neighbors(cell).map(fill);
-                    if (left - right).abs() + (lower - upper).abs() < SLANTED && error < COMPRESSED {
+                    let uniform = (left - right).abs() + (lower - upper).abs() < SLANTED;
+                    if uniform && error < COMPRESSED && !pumping.get(cell).is_some_and(|&pumps| pumps) {
                         excess[k] += POROUS_RELAXATION * lattice.cell * smaller(fill(cell) - POROUS, 0.0);
                     }
                 }
@@ -394,6 +323,7 @@ impl System {
             + held_by(&[&self.pressure, &self.potential, &self.bare])
             + held_by(&[&self.open[0], &self.open[1], &self.ease[0], &self.ease[1]])
             + held(&self.masked)
+            + held(&self.pumping)
             + held(&self.touched)
             + self.faces.iter().map(held).sum::<usize>()
     }
