@@ -33,8 +33,8 @@ const PEARLING: f64 = 0.5;
 /// by -sigma cos theta per length.
 ///
 /// In equilibrium the particles of the surface are a skin of twice the spacing in thickness and of the density of the
-/// liquid, which hardly stretches and slides on the liquid: measured, a drop sheared with its skin takes ten times
-/// the energy of the tension. Its inertia slows waves, and what it is made of changes its tension.
+/// liquid, which hardly stretches: measured, a drop sheared with its skin takes more than ten times the energy of the
+/// tension. That slows waves, and a few percent of particles more or fewer in it change the tension.
 ///
 /// All forces are gradients of E, equal and opposite: momentum is kept and nothing is pumped. A group, not an effect:
 /// the density constraint acts against it in the same substep.
