@@ -126,7 +126,7 @@ fn a_drop_has_the_pressure_of_laplace_and_the_modes_of_rayleigh() {
     });
 }
 
-/// The skin of a drop holds the particles that its start gave it: a few percent more or fewer change its tension.
+/// The tension of a drop depends on how its surface came to be: drops cut from one lattice at other radii have another.
 #[test]
 fn the_tension_of_other_drops_is_known_roughly() {
     if !full_size("drops of other radii") {
