@@ -32,6 +32,10 @@ const PEARLING: f64 = 0.5;
 /// Walls and bodies count as liquid, wholly for a contact angle theta of 90 degrees and less. Below, they attract too,
 /// by -sigma cos theta per length.
 ///
+/// In equilibrium the particles of the surface are a skin of twice the spacing in thickness and of the density of the
+/// liquid, which hardly stretches: measured, a drop sheared with its skin takes more than ten times the energy of the
+/// tension. That slows waves, and the tension depends on how the skin came to be.
+///
 /// All forces are gradients of E, equal and opposite: momentum is kept and nothing is pumped. A group, not an effect:
 /// the density constraint acts against it in the same substep.
 pub struct SurfaceTension {
