@@ -53,7 +53,7 @@ fn settings() -> Vec<(u32, u32)> {
 
 /// A pyramid that should stand: more substeps until it does.
 pub fn pyramid_section() -> Result<(String, String), String> {
-    const SUBSTEPS: [u32; 7] = [2, 4, 6, 8, 16, 32, 64];
+    const SUBSTEPS: [u32; 8] = [2, 3, 4, 6, 8, 16, 32, 64];
     let rows: usize = option("--rows", "100").parse().expect("--rows takes a number");
     let seconds: f64 = option("--stand", "10").parse().expect("--stand takes a number");
     let setup = Setup::pyramid(rows);

@@ -2,9 +2,10 @@
 //!
 //! With warm starts, a mode of the approach of which the sweeps of a substep leave the part s is multiplied from substep
 //! to substep by the roots of z^2 - 2 s z + s = 0. It grows for s < -1/3, and fades slowly, by sqrt(s), where s is near
-//! 1: plain sweeps leave high heaps swaying for good. Sweeps come in pairs, there and back, since these leave parts of 0
-//! to 1 (symmetric successive over-relaxation: Young 1971, "Iterative Solution of Large Linear Systems"). All pairs but
-//! the last are over-relaxed: loads pass through high stacks in fewer sweeps, and slow modes fade sooner.
+//! 1: plain sweeps in one direction leave high heaps swaying for good. Sweeps go there and back, since symmetric ones leave
+//! parts of 0 to 1 (Young 1971, "Iterative Solution of Large Linear Systems"), and they are over-relaxed: loads pass
+//! through high stacks in fewer sweeps, and slow modes fade sooner. The last sweep before fluids push the bodies, and the
+//! last of the substep, solve each contact as it is: over-relaxed ones would move bodies about under deep water.
 
 use super::contact_block::Block;
 use crate::simd::wide::Wide;
@@ -25,9 +26,9 @@ pub(super) struct Way {
 }
 
 impl Way {
-    /// Of the sweep of this number in a substep, of so many.
-    pub fn of(sweep: u32, all: u32) -> Way {
-        Way { back: sweep % 2 == 1, over_relaxed: sweep + 2 < all }
+    /// Of the sweep of this number in a substep, where so many come before fluids push the bodies and as many after.
+    pub fn of(sweep: u32, half: u32) -> Way {
+        Way { back: sweep % 2 == 1, over_relaxed: !(sweep + 1).is_multiple_of(half) }
     }
 }
 
