@@ -4,7 +4,7 @@
 # breaks, or does not use the settings it was given makes the command fail.
 #
 #   benches/peers.sh [--only liquids|bodies] [--particles 5000,20000] [--seconds 2] [--radius 3,2] [--grid no,yes]
-#                    [--peers dfsph,salva,taichi,pbf] [--bodies 5000] [--settle 3] [--substeps 2x1,1x4] [--rows 100]
+#                    [--peers dfsph,salva,taichi,pbf] [--bodies 5000] [--settle 3] [--substeps 2x2,1x3] [--rows 100]
 set -u
 cd "$(dirname "${BASH_SOURCE[0]}")/.." || exit 1
 

@@ -2,7 +2,7 @@
 //!
 //! `unipbd-peers --document FILE.md [--only liquids|bodies] [--chart FILE.svg] [--pictures FOLDER]`;
 //! liquids: `[--particles 5000,20000] [--seconds 2] [--radius 3,2] [--grid no,yes] [--peers dfsph,salva,taichi,pbf]`;
-//! bodies: `[--bodies 5000] [--settle 3] [--substeps 2x1,2x3,1x4,1x3] [--rows 100] [--stand 10]`.
+//! bodies: `[--bodies 5000] [--settle 3] [--substeps 2x2,2x4,1x3] [--rows 100] [--stand 10]`.
 //!
 //! Each section of the document is written when it is measured. A solver that breaks, or does not use the settings that
 //! it was given, ends the run with an error, and its section stays as it was.

@@ -48,7 +48,7 @@ fn depths(of: Penetration) -> String {
 fn settings() -> Vec<(u32, u32)> {
     let number = |text: &str| text.parse::<u32>().expect("--substeps takes substeps x iterations, such as 4x1,3x2");
     let setting = |text: &str| text.split_once('x').map_or_else(|| (number(text), 1), |(n, k)| (number(n), number(k)));
-    option("--substeps", "2x1,2x3,1x4,1x3").split(',').map(setting).collect()
+    option("--substeps", "2x2,2x4,1x3").split(',').map(setting).collect()
 }
 
 /// A pyramid that should stand: more substeps until it does.

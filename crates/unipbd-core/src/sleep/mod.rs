@@ -52,7 +52,7 @@ pub(crate) struct LiquidSleep {
     known: bool,
     /// Blocks to be woken, and blocks to be put to sleep.
     waking: Vec<Key>,
-    tiring: Vec<Key>,
+    falling_asleep: Vec<Key>,
     order: Vec<u32>,
 }
 
@@ -80,7 +80,7 @@ impl LiquidSleep {
             last_border: Vec::new(),
             known: false,
             waking: Vec::new(),
-            tiring: Vec::new(),
+            falling_asleep: Vec::new(),
             order: Vec::new(),
         })
     }
@@ -106,7 +106,7 @@ impl LiquidSleep {
         particles.position[..particles.awake()].iter().for_each(|&position| {
             self.blocks.at(self.layout.key(position));
         });
-        self.tiring.clear();
+        self.falling_asleep.clear();
         self.waking.clear();
         for &point in points {
             self.layout.around(self.layout.key(point), 1, |key| keep_if(&self.sleeping, key, &mut self.waking));
@@ -195,25 +195,25 @@ impl LiquidSleep {
 
     /// Connected blocks that have been at rest long enough fall asleep.
     fn find_tiring(&mut self) {
-        self.tiring.clear();
+        self.falling_asleep.clear();
         for (place, &(key, _)) in self.blocks.all().iter().enumerate() {
             let whole = self.blocks.whole(place);
             let calm = whole.sleepy && !whole.rough && whole.mean() <= self.still;
             if calm && whole.rest + self.frame_time >= self.delay {
-                self.tiring.push(key);
+                self.falling_asleep.push(key);
             }
         }
-        self.tiring.sort_unstable();
+        self.falling_asleep.sort_unstable();
     }
 
     /// The sleeping blocks adjacent to awake ones.
     fn find_border(&mut self) {
         self.sleeping.retain(|&key| !holds(&self.waking, key));
-        self.sleeping.extend_from_slice(&self.tiring);
+        self.sleeping.extend_from_slice(&self.falling_asleep);
         tidy(&mut self.sleeping);
         self.border.clear();
         let (layout, sleeping, border) = (&self.layout, &self.sleeping, &mut self.border);
-        let awake = self.blocks.all().iter().map(|&(key, _)| key).filter(|&key| !holds(&self.tiring, key));
+        let awake = self.blocks.all().iter().map(|&(key, _)| key).filter(|&key| !holds(&self.falling_asleep, key));
         for center in awake.chain(self.waking.iter().copied()) {
             layout.around(center, 1, |key| keep_if(sleeping, key, border));
         }
@@ -224,7 +224,7 @@ impl LiquidSleep {
     pub fn plan(&mut self, particles: &Particles) -> Option<Plan<'_>> {
         std::mem::swap(&mut self.border, &mut self.last_border);
         self.find_border();
-        if self.waking.is_empty() && self.tiring.is_empty() && self.border == self.last_border {
+        if self.waking.is_empty() && self.falling_asleep.is_empty() && self.border == self.last_border {
             return None;
         }
         let (awake, dense) = (particles.awake(), particles.dense());
@@ -232,12 +232,12 @@ impl LiquidSleep {
             |keys: &[Key], row: u32| !keys.is_empty() && holds(keys, self.layout.key(particles.position[row as usize]));
         let (now_awake, now_asleep) = (0..awake as u32, awake as u32..dense as u32);
         self.order.clear();
-        self.order.extend(now_awake.clone().filter(|&row| !within(&self.tiring, row)));
+        self.order.extend(now_awake.clone().filter(|&row| !within(&self.falling_asleep, row)));
         let stayed = self.order.len();
         self.order.extend(now_asleep.clone().filter(|&row| within(&self.waking, row)));
         let awake = self.order.len();
         let sleeping = now_asleep.filter(|&row| !within(&self.waking, row));
-        let sleeping = sleeping.chain(now_awake.filter(|&row| within(&self.tiring, row)));
+        let sleeping = sleeping.chain(now_awake.filter(|&row| within(&self.falling_asleep, row)));
         self.order.extend(sleeping.clone().filter(|&row| within(&self.border, row)));
         let border = self.order.len() - awake;
         self.order.extend(sleeping.filter(|&row| !within(&self.border, row)));

@@ -11,6 +11,7 @@ use super::complementarity::{self, Coupling, inverse};
 use super::contact_cache::{ContactCache, Point, Rebound};
 use super::frames::Frame;
 use super::push::Push;
+use super::relaxation::relaxed;
 use super::step_context::StepContext;
 use super::touch::{Reference, Touch};
 use crate::math::Vector64;
@@ -303,7 +304,9 @@ impl Contact {
     fn solve_once(&mut self, motion: (Twist, Twist), relaxation: f64) -> Push {
         let old = self.points.map(|point| point.normal_impulse);
         let Some(pressed) = self.press(motion, old) else { return Push::default() };
-        let pressed = self.relaxed(pressed, old, relaxation);
+        let normal = relaxed(pressed.normal, old, relaxation);
+        let turned = self.turned_by([normal[0] - old[0], normal[1] - old[1]]);
+        let pressed = Pressed { normal, turned, ..pressed };
         let mut push = Push::default();
         for (k, old) in old.into_iter().enumerate().take(self.count as usize) {
             let (point, normal) = (self.points[k], pressed.normal[k]);
@@ -329,13 +332,6 @@ impl Contact {
         }
         let normal = complementarity::solve(&self.effective_mass.normal, excess, old, [0.0; 2]);
         Some(Pressed { a, b, normal, turned: self.turned_by([normal[0] - old[0], normal[1] - old[1]]) })
-    }
-
-    /// Normal impulses whose changes are taken this many times.
-    fn relaxed(&self, pressed: Pressed, old: [f64; 2], relaxation: f64) -> Pressed {
-        let relaxed = |now: f64, old: f64| (old + relaxation * (now - old)).max(0.0);
-        let normal = [relaxed(pressed.normal[0], old[0]), relaxed(pressed.normal[1], old[1])];
-        Pressed { normal, turned: self.turned_by([normal[0] - old[0], normal[1] - old[1]]), ..pressed }
     }
 
     /// Rotation of the two bodies by changes of the normal impulses, with the split masses.

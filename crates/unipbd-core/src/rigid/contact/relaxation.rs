@@ -47,3 +47,8 @@ pub(super) fn over_in_lanes<W: Wide>(lanes: W, block: &Block, fall: f64) -> W {
     let over = lanes.like(MOST) * calm.smaller(lanes.like(1.0)).larger(zero);
     zero.where_below(lanes.row(first) + lanes.row(second), over, zero)
 }
+
+/// Normal impulses whose changes are taken this many times.
+pub(super) fn relaxed(now: [f64; 2], old: [f64; 2], relaxation: f64) -> [f64; 2] {
+    std::array::from_fn(|k| (old[k] + relaxation * (now[k] - old[k])).max(0.0))
+}
