@@ -80,6 +80,7 @@ impl World {
         let parts = &mut self.parts;
         let Some(rigid) = &mut parts.rigid else { return };
         rigid.contacts.run_on(parts.parallelism);
+        rigid.contacts.meet_particles(!parts.groups.is_empty());
         rigid.carry_anchors(&parts.particles, &self.rows);
         rigid.predict(self.clock.dt, self.clock.time, wide(parts.gravity));
         if parts.pressure_grid.is_some() || !parts.without_slip.is_empty() || rigid.any_light() {

@@ -118,6 +118,9 @@ pub struct Contacts {
     /// Sweeps of this substep so far.
     #[serde(skip)]
     swept: u32,
+    /// Whether particles push the bodies between the two calls of [`Contacts::iterate`] of a substep.
+    #[serde(skip)]
+    among_particles: bool,
     dt: f64,
     #[serde(skip)]
     moment: StepContext,
@@ -177,6 +180,7 @@ impl Contacts {
             rebounding: false,
             backward: false,
             swept: 0,
+            among_particles: false,
             dt: 0.0,
             moment: StepContext::default(),
             warm_factor: 1.0,
@@ -194,6 +198,11 @@ impl Contacts {
     pub(crate) fn run_on(&mut self, parallelism: Parallelism) {
         self.narrow_phase.parallelism = parallelism;
         self.jacobi.parallelism = parallelism;
+    }
+
+    /// Whether particles push the bodies from now on.
+    pub(crate) fn meet_particles(&mut self, among_particles: bool) {
+        self.among_particles = among_particles;
     }
 
     /// Ends a frame of length `frame_time` \[s]: mean forces on walls, and sleep. Call it before

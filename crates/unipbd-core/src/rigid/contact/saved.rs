@@ -41,6 +41,7 @@ impl Contacts {
             rebounding: false,
             backward: saved.backward,
             swept: 0,
+            among_particles: self.among_particles,
             dt: saved.dt,
             settings: self.settings,
             once: self.once,

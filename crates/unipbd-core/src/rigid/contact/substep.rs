@@ -174,7 +174,7 @@ impl Contacts {
         let sweeps = self.sweeps();
         self.blocks.take_motion(&bodies.displacements);
         for _ in 0..sweeps {
-            self.sweep_in_turn(bodies, Way::of(self.swept, sweeps));
+            self.sweep_in_turn(bodies, Way::of(self.swept, sweeps, self.among_particles));
             self.swept += 1;
         }
         self.blocks.give_motion(&mut bodies.displacements);
@@ -259,7 +259,7 @@ mod tests {
             |contact: &Contact| over(contact.is_pressed(), fall, sizes[contact.a as usize].min(size(contact)));
         let over: Vec<f64> = contacts.narrow_phase.contacts().iter().map(over_of).collect();
         for sweep in 0..sweeps {
-            let way = Way::of(sweep, sweeps);
+            let way = Way::of(sweep, sweeps, false);
             let backward = contacts.backward != way.back;
             let rows = contacts.narrow_phase.rows().0;
             let count = rows.len();
