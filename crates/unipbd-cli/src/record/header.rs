@@ -22,10 +22,10 @@ const FORMAT_ENTRY: &str = "log_format";
 /// Name of the attachment that holds the scene.
 pub(crate) const SCENE_ATTACHMENT: &str = "scene.toml";
 
-/// What a log says once: the scene, how it was changed, and what a picture needs besides frames.
+/// Data that a log holds once: the scene, its changes, and the data besides frames that a picture needs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Header {
-    /// What stays the same over the run.
+    /// Constant data of the run.
     pub setting: Setting,
     /// Text of the scene file, as read.
     pub scene_text: String,
