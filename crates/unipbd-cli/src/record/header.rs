@@ -15,7 +15,7 @@ pub(crate) const METADATA: &str = "unipbd";
 /// Version of the format of logs: it is raised when an older reader would misread a log.
 ///
 /// Logs of this version and of all before are read, newer ones are refused. Logs without the entry are of version 1;
-/// what a reader does not know (topics, fields, entries) it passes over, so that additions raise nothing.
+/// a reader passes over unknown data (topics, fields, entries), so that additions raise nothing.
 pub(crate) const LOG_FORMAT: u32 = 1;
 /// The entry of the metadata with that version.
 const FORMAT_ENTRY: &str = "log_format";
