@@ -75,7 +75,7 @@ impl Blocks {
         self.slots.clear();
         self.holders.clear();
         for (contact, number) in contacts.iter().zip(0u32..) {
-            // Bodies that contacts do not move may be in all lanes at once.
+            // Walls, and bodies that contacts do not move, may be in all lanes at once.
             let moved = |body: &u32| *body != NONE && bodies.is_dynamic(*body as usize);
             let sides = [contact.a, contact.b];
             let first = sides.iter().filter(|body| moved(body)).map(|&body| order.next[body as usize]).max();

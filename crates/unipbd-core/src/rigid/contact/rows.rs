@@ -13,7 +13,7 @@ pub(super) struct Row {
     pub along: (Vector64, Vector64),
     /// Moments of a unit impulse about the centres of mass.
     pub apply: (f64, f64),
-    /// The same for measuring a rotation; differs from `apply` where it is taken at the middle of a substep.
+    /// Moments by which rotations of the bodies count in the measured value; differs from `apply` where it is taken at the middle of a substep.
     pub measure: (f64, f64),
 }
 
