@@ -46,7 +46,7 @@ impl From<Exit> for ExitCode {
 pub struct Failure {
     /// The exit code.
     pub exit: Exit,
-    /// What to tell the user.
+    /// The message for the user.
     pub message: String,
     /// Whether the message is to be introduced.
     pub label: Label,

@@ -29,7 +29,7 @@ mod unix {
 
     use super::Exit;
 
-    /// What the handlers note.
+    /// Notes of the handlers.
     struct Noted {
         signal: Arc<AtomicUsize>,
         /// Whether the next signal ends the process.

@@ -45,7 +45,7 @@ impl Simulation {
         }
     }
 
-    /// What stays the same over the run.
+    /// Constant data of the run.
     pub fn setting(&self, scene: &Scene, path: &Path) -> Setting {
         Setting {
             name: title(scene, path),

@@ -49,7 +49,7 @@ impl Snapshot {
     }
 }
 
-/// What stays the same over a run: what a picture or a log needs besides its frames.
+/// Constant data of a run: the data besides frames that a picture or a log needs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Setting {
     /// Title of the scene.

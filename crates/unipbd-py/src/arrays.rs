@@ -50,7 +50,7 @@ pub fn rows(array: &PyReadonlyArray2<'_, f64>) -> Vec<Vector64> {
     array.as_array().rows().into_iter().map(|row| Vector64::new(row[0], row[1])).collect()
 }
 
-/// What the solver computes with as what Python sees.
+/// Converts a number of the solver to that of the arrays of Python.
 #[allow(clippy::unnecessary_cast)]
 pub fn single(value: unipbd_core::Real) -> f32 {
     value as f32

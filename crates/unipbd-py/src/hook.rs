@@ -1,4 +1,4 @@
-//! What a hook is given: the simulation at the start of a substep.
+//! The argument of a hook: the simulation at the start of a substep.
 
 use std::sync::{Mutex, PoisonError};
 
@@ -33,7 +33,7 @@ struct Seen {
     velocity: Twist,
 }
 
-/// What a hook asks for.
+/// Requests of a hook.
 #[derive(Default)]
 struct Wishes {
     /// In the order of ids.
@@ -55,7 +55,7 @@ pub fn call(py: Python<'_>, hook: &Py<PyAny>, view: &mut SubstepView<'_>) -> PyR
     Ok(())
 }
 
-/// What a function calls itself.
+/// Name of a function.
 pub fn name_of(py: Python<'_>, function: &Py<PyAny>) -> String {
     let named = function.getattr(py, "__qualname__").and_then(|name| name.extract(py));
     named.unwrap_or_else(|_| "a hook".to_owned())

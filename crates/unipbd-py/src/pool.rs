@@ -132,7 +132,7 @@ impl Pool {
         let process = std::process::id();
         if made.as_ref().is_none_or(|(of, _)| *of != process) {
             let pool = ThreadPoolBuilder::new().num_threads(self.threads).build();
-            // What a fork left has no threads to join.
+            // A pool inherited by a fork has no threads to join.
             let inherited = std::mem::replace(&mut *made, pool.ok().map(|pool| (process, pool)));
             std::mem::forget(inherited);
         }

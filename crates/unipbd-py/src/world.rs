@@ -30,12 +30,12 @@ pub struct World {
 }
 
 impl World {
-    /// What stays the same over the run.
+    /// Constant data of the run.
     pub fn setting(&self) -> Setting {
         self.running.setting(&self.scene, Path::new("simulation"))
     }
 
-    /// What a log with this many frames per second [1/s] says once.
+    /// The header of a log with this many frames per second [1/s].
     pub fn header(&self, py: Python<'_>, fps: f64) -> PyResult<Header> {
         Ok(Header {
             setting: self.setting(),

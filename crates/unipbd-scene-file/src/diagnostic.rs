@@ -36,9 +36,9 @@ pub struct Diagnostic {
     pub caret: Range<usize>,
     /// Path of the key, such as `emitter[0].position`; empty for the whole file and for syntax errors.
     pub key: String,
-    /// What is wrong.
+    /// Description of the fault.
     pub message: String,
-    /// What to do about it.
+    /// Suggestion for the user.
     pub hint: Option<String>,
 }
 

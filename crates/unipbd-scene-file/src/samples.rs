@@ -14,7 +14,7 @@ use super::tree::Node;
 /// Larger files are refused unread \[byte].
 const LARGEST: u64 = 16 << 20;
 
-/// What is wrong with a file: a message that names it, and what to do.
+/// An error in a file: a message that names it, and a hint for the user.
 struct Wrong {
     message: String,
     hint: String,

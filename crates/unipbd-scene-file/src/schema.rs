@@ -76,7 +76,7 @@ fn drop_null(object: &mut Map<String, Value>) {
     }
 }
 
-/// What a schema asks for.
+/// The kind of value that a schema requires.
 pub(super) enum Kind<'s> {
     Table(TableKind<'s>),
     Array(ArrayKind<'s>),
@@ -97,7 +97,7 @@ pub(super) enum Kind<'s> {
 pub(super) struct TableKind<'s> {
     pub(super) keys: Vec<(&'s str, &'s Value)>,
     pub(super) required: Vec<&'s str>,
-    /// What keys beyond `keys` hold, where they are allowed.
+    /// Schema of the values of keys beyond `keys`, where they are allowed.
     pub(super) others: Option<&'s Value>,
 }
 
@@ -195,7 +195,7 @@ fn array(schema: &Value) -> ArrayKind<'_> {
     }
 }
 
-/// What a kind is called in messages.
+/// Name of a kind in messages.
 pub(super) fn describe(root: &Value, schema: &Value) -> String {
     match kind(root, schema) {
         Kind::Table(_) => "a table".to_owned(),

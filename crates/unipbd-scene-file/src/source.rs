@@ -8,7 +8,7 @@ use unipbd_core::scene::KeyPath;
 use super::diagnostic::{Diagnostic, Origin, SceneFileError, printable};
 use super::place::Lines;
 
-/// What kind of check found a fault.
+/// The kind of check that found a fault.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum FaultKind {
     Syntax,

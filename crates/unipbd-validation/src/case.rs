@@ -1,4 +1,4 @@
-//! What a case is, and what comes of it.
+//! Description of a case, and its outcome.
 
 use unipbd_core::scene::{LegacySettings, PressureGridUse, Scene, SolverSettings};
 
@@ -55,7 +55,7 @@ impl std::fmt::Display for Band {
 /// One measured number.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Figure {
-    /// What it is, with its unit.
+    /// Description of the figure, with its unit.
     pub what: &'static str,
     /// The value.
     pub value: f64,
@@ -118,7 +118,7 @@ impl Trial {
     }
 }
 
-/// What a case gave.
+/// Outcome of a case.
 #[derive(Clone, Debug)]
 pub struct Outcome {
     /// Name of the case.
@@ -127,7 +127,7 @@ pub struct Outcome {
     pub resolution: u32,
     /// The figures; the first is the error norm of the case.
     pub figures: Vec<Figure>,
-    /// What it took.
+    /// Cost of the run.
     pub cost: Cost,
 }
 
@@ -148,7 +148,7 @@ impl Outcome {
 pub struct Case {
     /// Short name, for the command line and the table.
     pub name: &'static str,
-    /// What is known about it, and from whom.
+    /// Known facts about it, with their source.
     pub truth: &'static str,
     /// Resolution of the quick run.
     pub quick: u32,

@@ -18,7 +18,7 @@ pub struct Point {
 /// A curve with its name.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// What it shows.
+    /// Name of the quantity shown.
     pub name: String,
     /// Its points, in order.
     pub points: Vec<Point>,

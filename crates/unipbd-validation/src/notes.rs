@@ -1,4 +1,4 @@
-//! What a reader of the sheet must know of its figures: causes, and what was tried.
+//! Notes on the figures of the sheet: causes, and attempted remedies.
 
 /// Heading and body of the sections that go with the sheet.
 pub const NOTES: &[(&str, &str)] = &[

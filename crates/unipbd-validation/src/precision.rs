@@ -17,7 +17,7 @@ const SPACING: f64 = 0.125;
 /// How far from the origin far is \[spacings].
 pub const FAR: f64 = 1e5;
 
-/// What one run showed.
+/// Result of one run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
     /// Name of the scene.

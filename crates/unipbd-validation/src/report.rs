@@ -10,7 +10,7 @@ use crate::plan::Line;
 use crate::runner::Failure;
 use crate::stamp::{machine, stamp};
 
-/// What came of a line of the sheet.
+/// Result of a line of the sheet.
 pub struct Entry {
     /// The case and how it ran.
     pub line: Line,
@@ -34,7 +34,7 @@ impl Entry {
     }
 }
 
-/// What a reader of the sheet must know first.
+/// Introduction for readers of the sheet.
 pub const INTRODUCTION: &str = "\
 # Accuracy
 

@@ -19,7 +19,7 @@ impl std::fmt::Display for Failure {
 
 impl std::error::Error for Failure {}
 
-/// What a run cost.
+/// Cost of a run.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Cost {
     /// Wall-clock time of the steps, on one thread.

@@ -26,7 +26,7 @@ pub fn stamp() -> String {
     format!("{day}, commit {commit}{}", if changed { " with changes" } else { "" })
 }
 
-/// What a program prints, trimmed; nothing where it fails.
+/// Output of a program, trimmed; nothing where it fails.
 fn output(program: &str, arguments: &[&str]) -> Option<String> {
     let output = Command::new(program).args(arguments).output().ok().filter(|output| output.status.success())?;
     Some(String::from_utf8_lossy(&output.stdout).trim().to_owned())

@@ -15,7 +15,7 @@ pub const CASES: [(&str, u32, u32); 4] =
 
 const DAM_BREAK: &str = "dam_break";
 
-/// What is drawn of a case over time.
+/// The figure of a case that is drawn over time.
 pub struct Norm {
     /// Name of the case.
     pub case: &'static str,
@@ -23,7 +23,7 @@ pub struct Norm {
     pub figure: &'static str,
     /// Name of the picture.
     pub picture: &'static str,
-    /// What stands at its axis.
+    /// Label of its axis.
     axis: &'static str,
     /// Whether the figure says nothing about compression: then only settings count that hold water in the dam break.
     blind: bool,
@@ -93,7 +93,7 @@ pub struct Variant {
     scan: Scan,
 }
 
-/// What changes along a curve.
+/// The quantity that changes along a curve.
 #[derive(Clone, Copy)]
 enum Scan {
     /// Substeps at this many iterations each.
@@ -178,7 +178,7 @@ struct Timed {
     trial: Trial,
     /// Its worst C in the dam break.
     worst: f64,
-    /// What each round gave; nothing once one has failed.
+    /// Outcome of each round; nothing once one has failed.
     outcomes: Vec<Outcome>,
 }
 
@@ -187,7 +187,7 @@ impl Timed {
     fn run(&mut self, case: &'static Case, part: f64) {
         let mut trial = self.trial.clone();
         let solver = &mut trial.solver;
-        // What all four cases are made of.
+        // The water of all four cases.
         let water = Scene { solver: solver.clone(), liquid: vec![Liquid::new("water", 1000.0)], ..Scene::default() };
         let gradients = water.gradients();
         solver.relaxation = Some(solver.relaxation_of_liquids(gradients) * (1.0 + part));

@@ -1,4 +1,4 @@
-//! What a page is told, as JSON.
+//! Answers to a page, as JSON.
 
 use serde_json::{Map, Value, json};
 use unipbd_core::observe::{Quantity, Value as Measured};

@@ -1,4 +1,4 @@
-//! What stays the same over a run.
+//! Constant data of a run.
 
 use serde_json::{Map, Value, json};
 use unipbd_core::Solver;

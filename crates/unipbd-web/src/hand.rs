@@ -9,7 +9,7 @@ use unipbd_core::{Solver, SubstepView, Vector64};
 /// sixtieth of a second resolves it.
 const STIFFNESS: f64 = 14.0;
 
-/// What holds a body.
+/// A spring that holds a body.
 #[derive(Clone, Copy, Debug)]
 pub struct Hand {
     body: u32,

@@ -25,7 +25,7 @@ pub struct Session {
     pub(crate) poses: Vec<f64>,
 }
 
-/// What a change of settings did to a run.
+/// Effect of a change of settings on a run.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Changed {
     /// The run goes on from where it was.
@@ -108,7 +108,7 @@ impl Session {
         pour::disc(&mut self.solver, material, center, radius).map_err(|message| answer::failure(&message))
     }
 
-    /// What a page shows of the scene, as JSON.
+    /// Description of the scene for a page, as JSON.
     pub fn describe(&self) -> Value {
         describe::session(self)
     }

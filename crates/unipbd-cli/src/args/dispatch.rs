@@ -59,7 +59,7 @@ pub fn is_log(path: &Path) -> bool {
     path.extension().is_some_and(|extension| extension.eq_ignore_ascii_case("mcap"))
 }
 
-/// What to say when a log is given where a scene is expected.
+/// The message about a log that is given where a scene is expected.
 pub fn log_is_no_scene(path: &Path) -> String {
     let path = path.display();
     format!("{path} is a log, not a scene; try \"unipbd info {path}\" or \"unipbd render {path} -o pictures\"")

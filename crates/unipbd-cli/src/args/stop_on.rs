@@ -56,7 +56,7 @@ enum Comparison {
 /// How the reading of a gauge is named.
 const GAUGE: &str = "gauge.";
 
-/// What a condition is about.
+/// Subject of a condition.
 #[derive(Clone, Debug)]
 enum Subject {
     Column(&'static Column),
@@ -77,7 +77,7 @@ impl Subject {
             Subject::Column(column) => column.read(diagnostics),
             Subject::Gauge(name) => {
                 let gauge = diagnostics.gauges.iter().find(|gauge| gauge.name == *name)?;
-                // What has nothing to read meets no condition.
+                // A gauge with nothing to read meets no condition.
                 Some(gauge.value).filter(|value| !value.is_nan())
             }
         }

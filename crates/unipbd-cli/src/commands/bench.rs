@@ -136,7 +136,7 @@ impl Timed {
     }
 }
 
-/// What came out for one number of threads.
+/// Result for one number of threads.
 struct Measured {
     threads: usize,
     particles: u64,

@@ -98,7 +98,7 @@ fn object(name: &str, scene: &Scene, cost: &Cost) -> Value {
     })
 }
 
-/// What an emitter does whose width is not a whole number of particles.
+/// The message about an emitter whose width is not a whole number of particles.
 fn face(emitter: &Emitter, number: usize, spacing: f64) -> Option<String> {
     let (columns, apart) = emitter.columns(spacing);
     let name = if emitter.name.is_empty() { number.to_string() } else { format!("{:?}", emitter.name) };

@@ -1,4 +1,4 @@
-//! What a scene will cost: its first second of wall-clock time is run, the rest follows from the
+//! The cost of a scene: its first second of wall-clock time is run, the rest follows from the
 //! number of particles over time.
 
 use std::time::{Duration, Instant};
@@ -36,7 +36,7 @@ pub(super) fn emitted(scene: &Scene) -> u64 {
     estimate.particles_at_peak - estimate.particles_at_start.min(estimate.particles_at_peak)
 }
 
-/// What a scene will cost.
+/// The estimated cost of a scene.
 #[derive(Clone, Debug)]
 pub(super) struct Cost {
     /// The state at time 0.

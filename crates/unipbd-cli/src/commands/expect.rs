@@ -13,7 +13,7 @@ use crate::expect::Watch;
 use crate::report::{Console, Form};
 use crate::simulation::Simulation;
 
-/// What came of one scene.
+/// Result of one scene.
 struct Verdict {
     violations: Vec<String>,
     summary: String,

@@ -47,7 +47,7 @@ impl Viewers {
         self.0.as_ref().is_some_and(Live::wants_diagnostics)
     }
 
-    /// What viewers have changed since the last call.
+    /// Changes by viewers since the last call.
     pub fn take_events(&mut self) -> Vec<Event> {
         self.0.as_mut().map(Live::take_events).unwrap_or_default()
     }

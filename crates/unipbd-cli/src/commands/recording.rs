@@ -96,7 +96,7 @@ fn check_layout(layout: &Path, arguments: &LogArgs, scene: &Path) -> Result<(), 
     check_free(layout, arguments.force)
 }
 
-/// What the log of a run says once.
+/// The header of the log of a run.
 pub(super) fn header(simulation: &Simulation, loaded: &LoadedScene) -> Header {
     Header {
         setting: simulation.setting(&loaded.scene, &loaded.path),

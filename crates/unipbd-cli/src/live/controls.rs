@@ -1,4 +1,4 @@
-//! What viewers and the run share: whether it goes on, how fast, and what was asked of it.
+//! State shared by viewers and the run: whether it goes on, how fast, and the requests of viewers.
 
 use std::collections::VecDeque;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
@@ -89,7 +89,7 @@ impl Controls {
         self.requests.push(Request::Controlled);
     }
 
-    /// What was asked since the last call, and the topics with new subscribers.
+    /// Requests since the last call, and the topics with new subscribers.
     pub fn take_requests(&mut self) -> (Vec<Request>, Topics) {
         (self.requests.take(), std::mem::take(&mut self.newcomers))
     }

@@ -92,7 +92,7 @@ impl Live {
         self.server.wants_diagnostics()
     }
 
-    /// What viewers have changed since the last call, as events of the run.
+    /// Changes by viewers since the last call, as events of the run.
     pub fn take_events(&mut self) -> Vec<Event> {
         std::mem::take(&mut self.events)
     }

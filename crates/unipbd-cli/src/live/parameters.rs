@@ -1,4 +1,4 @@
-//! What viewers can change: each change is an edit of the run like any other.
+//! Parameters that viewers can change: each change is an edit of the run like any other.
 
 use std::collections::BTreeMap;
 
@@ -21,12 +21,12 @@ const SCENE: &str = "scene";
 /// Speeds of motors begin like this, then comes the name of the joint, or its number.
 const MOTOR: &str = "motor_speed/";
 
-/// What came of a request to change parameters.
+/// Result of a request to change parameters.
 #[derive(Debug, Default)]
 pub struct Changes {
-    /// What was changed, for the log.
+    /// Changes made, for the log.
     pub made: Vec<String>,
-    /// What was not, and why.
+    /// Changes refused, with reasons.
     pub refused: Vec<String>,
 }
 

@@ -1,4 +1,4 @@
-//! What viewers ask of a run between two frames.
+//! Requests of viewers to a run between two frames.
 
 use foxglove::websocket::{AnyClient, GetParametersResponder, Parameter, SetParametersResponder};
 

@@ -179,7 +179,7 @@ fn body(shape: &BodyShape, state: BodyState) -> Result<Body, String> {
         filter: CollisionFilter { layers: shape.layers, collides_with: shape.collides_with, group: 0 },
         sensor: shape.sensor,
         gravity_factor: shape.gravity_factor,
-        // What is gone has left its shape.
+        // A removed body has no shape.
         removed: shape.radius == 0.0 && shape.outline_x.is_empty(),
         asleep: state.asleep,
         fluid_force: Vector64::new(state.fluid_force_x, state.fluid_force_y),

@@ -30,7 +30,7 @@ fn has_more_fields(mut data: &[u8], most: usize) -> bool {
     true
 }
 
-/// What follows the first field; `None` where there is none.
+/// The bytes after the first field; `None` where there is none.
 fn skip_field(data: &[u8]) -> Option<&[u8]> {
     let (key, data) = varint(data)?;
     match key & 7 {

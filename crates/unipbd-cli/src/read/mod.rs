@@ -49,7 +49,7 @@ pub struct Frame {
     pub diagnostics: Option<Diagnostics>,
     /// Hash of the state, where the run recorded it.
     pub state_hash: Option<u64>,
-    /// What happened since the frame before.
+    /// Events since the frame before.
     pub events: Vec<Event>,
 }
 
@@ -89,7 +89,7 @@ impl Log {
         &self.header
     }
 
-    /// What stays the same over the run.
+    /// Constant data of the run.
     pub fn setting(&self) -> &Setting {
         &self.header.setting
     }
@@ -99,7 +99,7 @@ impl Log {
         self.fields
     }
 
-    /// What the summary says; `None` for a log that was cut off.
+    /// Contents of the summary; `None` for a log that was cut off.
     pub fn totals(&self) -> Option<Totals> {
         self.totals
     }

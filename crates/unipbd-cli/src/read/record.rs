@@ -30,7 +30,7 @@ pub(crate) enum Record<'a> {
     Message { channel: u16, sequence: u32, time: u64, data: &'a [u8] },
     /// Describes messages.
     Schema,
-    /// What a reader may pass over.
+    /// A record that a reader may pass over.
     Other,
 }
 

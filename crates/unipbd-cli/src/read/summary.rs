@@ -8,7 +8,7 @@ use super::records::MAGIC;
 use super::wire::Wire;
 use crate::record::Topic;
 
-/// What the summary of a complete log says.
+/// Contents of the summary of a complete log.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Totals {
     /// Frames in the log.

@@ -18,7 +18,7 @@ use std::{fmt, fs, io};
 
 use super::same_file::same_file;
 
-/// What to do with a file that is already where a log shall go.
+/// Treatment of a file that already exists at the destination of a log.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Existing {
     /// Leave it and report an error.
@@ -69,7 +69,7 @@ impl std::error::Error for DestinationError {
     }
 }
 
-/// What to say of an output that would replace its input.
+/// The message about an output that would replace its input.
 pub fn is_input(path: &Path) -> String {
     format!("{} is the input itself: choose another name for the output", path.display())
 }

@@ -44,12 +44,12 @@ impl EncodedFrame {
     }
 }
 
-/// What is known about a frame.
+/// Data of a frame.
 pub(crate) struct FrameState<'a> {
     pub(crate) snapshot: &'a Snapshot,
     pub(crate) diagnostics: Option<&'a Diagnostics>,
     pub(crate) state_hash: Option<u64>,
-    /// What happened since the last frame.
+    /// Events since the last frame.
     pub(crate) events: &'a [Event],
 }
 

@@ -15,17 +15,17 @@ pub(crate) const METADATA: &str = "unipbd";
 /// Version of the format of logs: it is raised when an older reader would misread a log.
 ///
 /// Logs of this version and of all before are read, newer ones are refused. Logs without the entry are of version 1;
-/// what a reader does not know (topics, fields, entries) it passes over, so that additions raise nothing.
+/// a reader passes over unknown data (topics, fields, entries), so that additions raise nothing.
 pub(crate) const LOG_FORMAT: u32 = 1;
 /// The entry of the metadata with that version.
 const FORMAT_ENTRY: &str = "log_format";
 /// Name of the attachment that holds the scene.
 pub(crate) const SCENE_ATTACHMENT: &str = "scene.toml";
 
-/// What a log says once: the scene, how it was changed, and what a picture needs besides frames.
+/// Data that a log holds once: the scene, its changes, and the data besides frames that a picture needs.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Header {
-    /// What stays the same over the run.
+    /// Constant data of the run.
     pub setting: Setting,
     /// Text of the scene file, as read.
     pub scene_text: String,

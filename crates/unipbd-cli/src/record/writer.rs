@@ -13,7 +13,7 @@ use super::{Fields, Header};
 const CHUNK_SIZE: u64 = 1024 * 1024;
 const BUFFER_SIZE: usize = 256 * 1024;
 
-/// What went into a log.
+/// Totals of a log.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) struct Totals {
     pub(crate) frames: u64,

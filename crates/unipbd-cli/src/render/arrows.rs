@@ -23,7 +23,7 @@ const LONGEST: f32 = 1.5;
 /// Length of the longest arrow of force, as a part of the width.
 const LONGEST_FORCE: f32 = 0.16;
 
-/// What arrows of one picture show.
+/// Data of the arrows of one picture.
 pub(super) struct Arrows<'a> {
     pub vectors: Vectors,
     /// The number that the longest arrow stands for [m/s], \[N]; left out, that of the frame.

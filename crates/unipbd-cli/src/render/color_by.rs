@@ -1,4 +1,4 @@
-/// What the colour of a particle shows.
+/// The quantity that the colour of a particle shows.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ColorBy {
     /// The colour of its material.

@@ -35,7 +35,7 @@ const GAS_CLOSED: f32 = 1.6;
 /// Largest opacity of gas that only hints at where it is.
 const VEIL_OPACITY: f32 = 0.12;
 
-/// What a layer needs to know of the frame.
+/// Data of the frame for a layer.
 #[derive(Clone, Copy)]
 pub(super) struct Scope<'a> {
     pub frame: &'a Snapshot,
@@ -46,7 +46,7 @@ pub(super) struct Scope<'a> {
     /// Colours of the liquids where there are several.
     pub liquids: &'a [[f32; 3]],
     pub walls: &'a [Wall],
-    /// What gas and smoke are cut to, of the size of the region.
+    /// Mask to which gas and smoke are cut, of the size of the region.
     pub mask: Option<&'a Mask>,
     /// Spacing in pixels.
     pub spacing: f32,
@@ -167,7 +167,7 @@ fn smoke_paint(mean: [f32; 3], density: f32) -> ([f32; 3], f32) {
     (mean.map(|channel| channel * brightness), 1.0 - 1.0 / (1.0 + 1.5 * density))
 }
 
-/// What a blob is part of.
+/// The shape to which a blob belongs.
 #[derive(Clone, Copy)]
 enum Shape {
     Surface,

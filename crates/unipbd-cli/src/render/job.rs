@@ -23,7 +23,7 @@ pub enum Existing {
     Replace,
 }
 
-/// What to render, and where to.
+/// Description of a rendering: its output, and how it is drawn.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RenderJob {
     /// Where to write; see [`plan_output`].
@@ -73,7 +73,7 @@ impl RenderJob {
     }
 }
 
-/// What was rendered.
+/// Result of a rendering.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rendered {
     /// Pictures drawn.

@@ -46,7 +46,7 @@ pub enum TimeStamp {
     Hidden,
 }
 
-/// What a figure in print needs besides the scene.
+/// Additions to the scene for a figure in print.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Annotations {
     /// Axes with numbers in metres, at the left and below.
@@ -57,7 +57,7 @@ pub struct Annotations {
     pub legend: bool,
 }
 
-/// What arrows show.
+/// The quantity that arrows show.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Vectors {
     /// Mean velocities of particles [m/s], and those of bodies.
@@ -71,7 +71,7 @@ pub enum Vectors {
 pub struct RenderOptions {
     /// Width in pixels, rounded to an even number; the height follows from the view.
     pub width: u32,
-    /// What colours show.
+    /// The quantity that colours show.
     pub color_by: ColorBy,
     /// How carriers are drawn.
     pub style: Style,
@@ -85,7 +85,7 @@ pub struct RenderOptions {
     pub time_stamp: TimeStamp,
     /// Axes, scale bar, legend.
     pub annotations: Annotations,
-    /// What arrows show, if there are any.
+    /// The quantity that arrows show, if there are any.
     pub vectors: Option<Vectors>,
     /// The number that the longest arrow stands for [m/s], \[N]; left out, that of the frame drawn.
     pub longest_vector: Option<f64>,

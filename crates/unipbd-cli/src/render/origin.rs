@@ -2,7 +2,7 @@ use std::fs::File;
 use std::io::{Read, Seek, SeekFrom};
 use std::path::Path;
 
-/// What the mark in a file begins with.
+/// Beginning of the mark in a file.
 const MARK: &str = "unipbd-run:";
 /// A mark lies in the first or in the last bytes of a file, so many of them.
 const SEARCHED: u64 = 64 * 1024;

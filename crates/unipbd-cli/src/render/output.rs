@@ -2,7 +2,7 @@ use std::path::{Path, PathBuf};
 
 use super::error::RenderError;
 
-/// What a path asks for.
+/// The kind of output that a path asks for.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Output {
     /// One picture.

@@ -19,11 +19,11 @@ use crate::snapshot::{Setting, Snapshot};
 /// Most lines of a legend.
 const MOST_ENTRIES: usize = 12;
 
-/// What is settled once the view is known.
+/// Data that are settled once the view is known.
 struct Canvas {
     camera: Camera,
     walls: Vec<Wall>,
-    /// What closed walls surround.
+    /// The region that closed walls surround.
     mask: Option<Mask>,
     image: Image,
     /// The image within its axes.

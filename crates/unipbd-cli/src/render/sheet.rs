@@ -45,12 +45,12 @@ impl Sheet {
         self.size
     }
 
-    /// What is drawn from now on lies `offset` away, and is cut to a rectangle of size `clip`.
+    /// Starts a layer: later marks lie `offset` away, and are cut to a rectangle of size `clip`.
     pub fn start_layer(&mut self, offset: [f32; 2], clip: Option<[f32; 2]>) {
         self.layers.push(Layer { offset, clip, region: None, marks: Vec::new() });
     }
 
-    /// What is drawn from now on lies where the last layer does, and is cut to this region besides.
+    /// Starts a layer at the place of the last one: later marks are cut to this region besides.
     pub fn cut_to(&mut self, region: Option<Path>) {
         let (offset, clip) = self.layers.last().map_or(([0.0; 2], None), |layer| (layer.offset, layer.clip));
         self.layers.push(Layer { offset, clip, region, marks: Vec::new() });

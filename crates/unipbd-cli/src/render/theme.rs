@@ -9,7 +9,7 @@ pub(super) struct Theme {
     pub wall_fill: Rgb,
     pub text: Rgb,
     pub faint_text: Rgb,
-    /// What the edge of a surface is tinted with, and how much.
+    /// Tint of the edge of a surface, and its strength.
     pub rim: (Rgb, f32),
     /// Colours of bodies that have none of their own, in turn.
     pub bodies: [Rgb; 5],

@@ -111,7 +111,7 @@ impl Still<'_> {
                     None => (material.unwrap_or(self.theme.faint_text), opacity),
                 };
                 let center = self.camera.particle(frame.positions[row]);
-                // What is cut away need not be in the file.
+                // Discs outside the picture are left out of the file.
                 if (0..2).all(|axis| (-radius..=self.camera.size[axis] as f32 + radius).contains(&center[axis])) {
                     sheet.disc(center, radius, color, opacity);
                 }

@@ -67,8 +67,8 @@ impl Wall {
     }
 }
 
-/// What closed walls surround: gas and smoke are cut to it, as their soft edges reach farther than they do. Nothing
-/// where no wall is closed.
+/// The region that closed walls surround: gas and smoke are cut to it, as their soft edges reach farther than they do.
+/// Nothing where no wall is closed.
 pub(super) fn region(walls: &[Wall], camera: &Camera) -> Option<Path> {
     let mut path = PathBuilder::new();
     for corners in walls.iter().filter_map(Wall::inside) {

@@ -1,4 +1,4 @@
-//! What the user sees: messages, progress, JSON lines, summaries.
+//! Output for the user: messages, progress, JSON lines, summaries.
 
 pub mod clean;
 mod console;

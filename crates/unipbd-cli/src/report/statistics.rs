@@ -36,7 +36,7 @@ impl Outcome {
         }
     }
 
-    /// What there is to say about it.
+    /// The message about the outcome, if there is one.
     pub fn message(&self) -> Option<&str> {
         match self {
             Outcome::Diverged { message } | Outcome::ConditionMet { message } => Some(message),

@@ -16,7 +16,7 @@ use crate::step::{BodyForce, FluidParts, Remake, SubstepRule};
 /// Stream of random numbers of gusts.
 const WIND_STREAM: u64 = 3 << 32;
 
-/// What makes these parts anew when a first body comes; `None` for scenes without fluids, or with bodies.
+/// The function that remakes these parts for a first body; `None` for scenes without fluids, or with bodies.
 pub(super) fn remake(scene: &Scene, seed: u64, periodic: Periodic) -> Option<Remake> {
     let fluid = scene.materials().any(|material| material.phase().is_fluid());
     if !fluid || !scene.body.is_empty() {
@@ -109,7 +109,7 @@ fn boxed(effect: Option<impl Effect + 'static>) -> Option<Box<dyn Effect>> {
     effect.map(|effect| Box::new(effect) as Box<dyn Effect>)
 }
 
-/// What gravity does to each material.
+/// The body force of gravity on each material.
 pub(super) fn forces(scene: &Scene) -> Vec<BodyForce> {
     scene.materials().map(|material| body_force(material, scene)).collect()
 }

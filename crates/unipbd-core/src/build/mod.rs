@@ -186,7 +186,7 @@ fn kit(scene: &Scene) -> Scene {
     }
 }
 
-/// What a first body is added to.
+/// The empty set of bodies to which a first body is added.
 fn no_bodies(scene: &Scene) -> RigidBodies {
     let fluid = scene.materials().any(|material| material.phase().is_fluid());
     let met = fluid.then(|| Met { first_sample: 0, outlines: lets_outlines(scene) });

@@ -17,7 +17,7 @@ pub(crate) struct CorrectionParts {
     pub without_slip: usize,
 }
 
-/// What a fluid does to a body through its outline.
+/// Load of a fluid on a body through its outline.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct OutlineLoad {
     /// Force times dt^2 [kg m].

@@ -126,7 +126,7 @@ pub trait ConstraintGroup: Send + Sync {
     /// The name under which the group is timed and logged.
     fn name(&self) -> &str;
 
-    /// What the group needs from the loop.
+    /// Requirements of the group on the loop.
     fn needs(&self) -> Needs;
 
     /// Called once per substep, after prediction and neighbour search.

@@ -8,7 +8,7 @@ use crate::rows::RowIndex;
 use crate::scene::{BodyDescription, JointDescription};
 use crate::step::Solver;
 
-/// What the changes of an edit did.
+/// Effects of the changes of an edit on their surroundings.
 #[derive(Default)]
 pub(super) struct Felt {
     /// Places where something came or went.

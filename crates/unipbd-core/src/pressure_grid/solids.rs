@@ -38,7 +38,7 @@ pub(super) struct Solid {
     pub body: u32,
     /// Its faces.
     faces: Range<usize>,
-    /// What moves it.
+    /// Its responses to loads.
     responses: Range<usize>,
     /// Predicted velocity [m/s], [rad/s].
     velocity: [f64; 3],

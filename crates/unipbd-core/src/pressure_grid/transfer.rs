@@ -134,7 +134,7 @@ fn add_up<T: Default + Copy + Add>(tasks: &[Task], first: usize, out: &mut [T], 
     }
 }
 
-/// What a column of sums holds.
+/// A value type of columns of sums.
 pub(super) trait Add {
     fn plus(self, other: Self) -> Self;
 }

@@ -36,11 +36,11 @@ pub struct Bodies {
     /// Square root of the area \[m].
     pub(crate) sizes: Vec<f64>,
     pub(super) scripts: Vec<Script>,
-    /// What moves each body; follows from the other columns.
+    /// The cause of the motion of each body; follows from the other columns.
     #[serde(skip)]
     pub(super) movers: Vec<Mover>,
     pub(super) views: Vec<Body>,
-    /// What each body was made from, with all changes since.
+    /// The specification of each body, with all changes since.
     pub(super) specs: Vec<BodySpec>,
 }
 

@@ -91,7 +91,7 @@ impl Bodies {
         Some(bodies)
     }
 
-    /// What each body was made from.
+    /// The specification of each body.
     pub(crate) fn specifications(&self) -> &[BodySpec] {
         &self.specs
     }

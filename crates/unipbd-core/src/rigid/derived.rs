@@ -1,4 +1,4 @@
-//! What follows from the specification of a body: mass, outline, samples, script.
+//! Quantities that follow from the specification of a body: mass, outline, samples, script.
 
 use super::{Body, BodyKind, BodySpec, Damping, Elasticity, MassSpec, Motion, Pose, Rotation, Twist};
 use crate::math::{Vector64, direction};
@@ -27,7 +27,7 @@ pub(super) struct Script {
     pub(super) damping: Damping,
 }
 
-/// What moves a body: one byte, read in every loop over bodies.
+/// The cause of the motion of a body: one byte, read in every loop over bodies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Mover {
     /// Contacts and forces.
@@ -49,7 +49,7 @@ impl Mover {
     }
 }
 
-/// What follows from the specification of a body.
+/// Quantities that follow from the specification of a body.
 pub(super) struct Derived {
     pub pose: Pose,
     pub velocity: Twist,

@@ -25,7 +25,7 @@ pub(crate) type Side = (u32, [f64; 3]);
 /// Change of the velocity of a body by a force and a torque: the inverse mass, as far as nothing holds the body.
 pub(crate) type Mobility = [[f64; 3]; 3];
 
-/// What a body presses on holds it if its mobility along the contact is this part of that of the body.
+/// A contact partner holds a body if its mobility along the contact is at most this part of that of the body.
 const HOLDS: f64 = 0.05;
 /// A body whose mobility along a contact is this part of that of the free body is held: what is left is rounding, and
 /// taking out its direction would take out any other.

@@ -34,7 +34,7 @@ impl Bodies {
     }
 }
 
-/// What a run changes of a body as it is seen from outside.
+/// Takes over the state that a run changes of a body as it is seen from outside.
 fn take_motion(mine: &mut Body, saved: Body, bends: bool) {
     (mine.position, mine.angle) = (saved.position, saved.angle);
     (mine.velocity, mine.angular_velocity) = (saved.velocity, saved.angular_velocity);

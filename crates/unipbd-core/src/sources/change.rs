@@ -36,7 +36,7 @@ impl EmitterChange {
 #[derive(Clone, Debug, PartialEq)]
 #[non_exhaustive]
 pub struct EmitterReading {
-    /// What it is, with all changes since the start.
+    /// Its description, with all changes since the start.
     pub description: Emitter,
     /// Whether it pushes particles out.
     pub running: bool,
@@ -139,7 +139,7 @@ impl EmitterSystem {
 /// An emitter from a saved state.
 pub(crate) struct RestoredEmitter(Nozzle);
 
-/// What is wrong with an emitter beside these materials, in words.
+/// The first problem of an emitter beside these materials, in words.
 pub(crate) fn problem_of(emitter: &Emitter, kit: &Scene) -> Option<String> {
     let scene = Scene { emitter: vec![Emitter { name: String::new(), ..emitter.clone() }], ..kit.clone() };
     scene.validate().0.first().map(|problem| problem.to_string())

@@ -30,7 +30,7 @@ pub struct EmitterSystem {
 }
 
 pub(super) struct Nozzle {
-    /// What it is, with all changes since the start.
+    /// Its description, with all changes since the start.
     pub description: Emitter,
     /// Whether it was taken away; its number is not given to another.
     pub removed: bool,

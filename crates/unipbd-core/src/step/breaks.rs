@@ -22,7 +22,7 @@ impl World {
     }
 }
 
-/// What is said of a joint that has broken.
+/// The message about a joint that has broken.
 fn broken(index: u32, joint: &JointState, bodies: &[Body]) -> String {
     let name = if joint.name.is_empty() { format!("number {index}") } else { format!("\"{}\"", joint.name) };
     let body = &bodies[joint.joint.body as usize].name;

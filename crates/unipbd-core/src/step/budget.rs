@@ -1,4 +1,4 @@
-//! What frames cost, and what a budget allows.
+//! Cost of frames, and the substeps that a budget allows.
 
 use std::time::Duration;
 

@@ -38,7 +38,7 @@ pub enum SolverError {
         particle: u32,
         /// Name of its material.
         material: String,
-        /// What the hook asked for, all hooks together [m/s^2].
+        /// Acceleration requested by the hook, all hooks together [m/s^2].
         acceleration: [f64; 2],
         /// The acceleration from which on a run would diverge at once [m/s^2].
         limit: f64,

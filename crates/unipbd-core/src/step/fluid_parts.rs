@@ -1,4 +1,4 @@
-//! What the fluids of a run know of bodies.
+//! The parts of the fluids of a run that depend on bodies.
 
 use super::integrate::BodyForce;
 use super::substeps::SubstepRule;

@@ -17,7 +17,7 @@ pub enum Solid {
 /// Where a ray meets a solid.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RayHit {
-    /// What it meets.
+    /// The solid that it meets.
     pub solid: Solid,
     /// Where \[m].
     pub point: Vector64,
@@ -30,7 +30,7 @@ pub struct RayHit {
 /// The outline nearest to a point.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NearestSolid {
-    /// What it belongs to.
+    /// The solid to which it belongs.
     pub solid: Solid,
     /// Distance, negative inside \[m].
     pub distance: f64,

@@ -2,7 +2,7 @@
 
 use crate::math::Real;
 
-/// What is known about a material.
+/// History of the density errors of a material.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(super) struct Watched {
     /// Frames in a row that it was far off.

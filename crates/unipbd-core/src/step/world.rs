@@ -82,7 +82,7 @@ pub(crate) struct Parts {
     pub no_bodies: RigidBodies,
     /// Material of the samples of bodies, where fluids see them.
     pub sample_material: Option<MaterialIndex>,
-    /// What is read in each frame, in the order of the scene.
+    /// Gauges read in each frame, in the order of the scene.
     pub gauges: Vec<Gauge>,
     /// Makes what fluids know of bodies, in a scene of fluids that began without bodies.
     pub remake: Option<Remake>,
@@ -131,7 +131,7 @@ pub(crate) struct World {
     pub(super) velocities: Vec<Vector>,
     /// The criterion for the number of substeps of the last frame.
     pub(super) choice: Choice,
-    /// What is known about the density of each material.
+    /// History of the density errors of each material.
     pub(super) watched: Vec<Watched>,
     /// Buffer of the density errors by material.
     pub(super) material_errors: Vec<Errors>,

@@ -30,7 +30,7 @@ pub struct EdgeTables {
     nodes: Vec<[Real; 2]>,
 }
 
-/// What an edge adds to the part of a kernel inside an outline.
+/// Contribution of an edge to the part of a kernel inside an outline.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Flow {
     /// Part of the kernel, but for the whole of a kernel whose centre lies inside.
@@ -65,7 +65,7 @@ impl EdgeTables {
         self.radius
     }
 
-    /// What an edge adds whose line lies at this distance, positive outside, between two places along it.
+    /// Contribution of an edge whose line lies at this distance, positive outside, between two places along it.
     #[inline]
     pub(super) fn flow(&self, distance: Real, [from, to]: [Real; 2]) -> Flow {
         let square = self.radius * self.radius - distance * distance;

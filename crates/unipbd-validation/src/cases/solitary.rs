@@ -56,7 +56,7 @@ fn solitary_wave(trial: &Trial) -> Result<Measured, Failure> {
     Ok((figures, run.cost))
 }
 
-/// What the crest may lose and gain.
+/// The band allowed for the height of the crest.
 const BAND: Band = Band::between(0.92, 1.01);
 
 /// The channel with the wave in it: a pool whose columns are drawn together and stretched where the wave is high, so that

@@ -28,7 +28,7 @@ pub const VORTEX_PAIR_GAS: Case = Case {
     ..VORTEX_PAIR
 };
 
-/// What fills a box.
+/// The fluid that fills a box.
 #[derive(Clone, Copy, PartialEq)]
 enum Filling {
     Liquid,
@@ -154,7 +154,7 @@ fn mode_of_start(x: Vector64) -> Vector64 {
     Vector64::new(x.sin() * y.cos(), -x.cos() * y.sin())
 }
 
-/// What is asked for from 100 spacings along the side on.
+/// The band required from 100 spacings along the side on.
 fn fine(trial: &Trial) -> Band {
     if trial.resolution < 100 { Band::OPEN } else { trial.with_grid(Band::between(0.9, 1.25)) }
 }

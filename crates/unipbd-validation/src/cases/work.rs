@@ -40,7 +40,7 @@ fn work(trial: &Trial) -> Result<Measured, Failure> {
     Ok((figures, cost))
 }
 
-/// What a size took: per frame.
+/// Cost of a size: per frame.
 struct Point {
     particles: f64,
     time: f64,
@@ -52,7 +52,7 @@ fn point(trial: &Trial, times: u32, scene: fn(&Trial) -> Scene) -> Result<(Point
     let trial = Trial { resolution: trial.resolution * times, ..trial.clone() };
     let mut run = trial.start(&scene(&trial))?;
     let mut compression = 0.0;
-    // What is at rest takes on its pressure first.
+    // A scene at rest takes on its pressure first.
     run.frames(30, |_| ())?;
     let before = run.cost;
     run.frames(60, |solver| compression += solver.diagnostics().density_error_mean_abs / 60.0)?;

@@ -70,7 +70,7 @@ const TOP: f64 = 64.0;
 const GAP: f64 = 46.0;
 
 /// The picture: a tile per cell, green to red by the worst C; energy that grows is marked by a ring,
-/// what broke is black.
+/// broken runs are black.
 pub fn picture(maps: &[Surveyed<'_>]) -> String {
     let columns = SUBSTEPS.len() + 1;
     let rows: usize = maps.iter().map(|(map, _)| map.rows.len()).sum();

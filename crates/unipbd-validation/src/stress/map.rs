@@ -11,7 +11,7 @@ pub const GAIN: f64 = 0.005;
 /// Rest distance of all maps \[m]; frames take 1/60 s.
 const SPACING: f64 = 0.1;
 
-/// What a run came to.
+/// Result of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cell {
     /// Most substeps of a frame.
@@ -20,7 +20,7 @@ pub struct Cell {
     pub worst: f64,
     /// Largest growth of the energy over that of the start, as a part of it.
     pub gain: f64,
-    /// What broke or stopped the run, if anything did.
+    /// The failure that broke or stopped the run, if any.
     pub broken: Option<String>,
 }
 
@@ -33,7 +33,7 @@ impl Cell {
 
 /// One table: scenes by rows, substeps per frame by columns, `auto` as the last one.
 pub struct Map {
-    /// What changes from row to row.
+    /// The quantity that changes from row to row.
     pub name: &'static str,
     /// The scene of all rows.
     pub setup: &'static str,

@@ -30,7 +30,7 @@ pub enum Ending {
     Stopped(String),
     /// The scene was refused.
     Refused,
-    /// What must not happen.
+    /// A failure that must not happen.
     Broken(String),
 }
 
@@ -70,7 +70,7 @@ fn is_finite(solver: &Solver) -> bool {
         && solver.bodies().iter().all(|body| body.position.is_finite() && body.velocity.is_finite())
 }
 
-/// What is wrong with a state.
+/// Description of the fault of a state, if any.
 fn unsound(solver: &Solver, scene: &Scene) -> Option<String> {
     if !is_finite(solver) {
         return Some("a position or velocity is not finite".to_owned());

@@ -8,7 +8,7 @@ use crate::scenes::{body, nozzle};
 
 /// A stress with a name.
 pub struct Stress {
-    /// What is asked.
+    /// Short description of the test.
     pub name: &'static str,
     /// Runs it.
     pub run: fn() -> Ending,

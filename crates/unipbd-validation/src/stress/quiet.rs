@@ -13,7 +13,7 @@ const TO_REST: u64 = 1200;
 const SIZE: [f64; 2] = [20.0, 10.0];
 const SPACING: f64 = 0.1;
 
-/// What very many steps did to a pool.
+/// Effect of very many steps on a pool.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Quiet {
     /// Steps counted.

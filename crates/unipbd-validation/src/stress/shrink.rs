@@ -78,7 +78,7 @@ pub fn shrink(scene: &Scene, mut fails: impl FnMut(&Scene) -> bool) -> Scene {
             while index < places(&smallest) {
                 let mut candidate = smallest.clone();
                 if change(&mut candidate, index) && fails(&candidate) {
-                    // What follows has moved to this index, or may be changed once more.
+                    // The next element has moved to this index, or this one may be changed once more.
                     (smallest, shrunk) = (candidate, true);
                 } else {
                     index += 1;

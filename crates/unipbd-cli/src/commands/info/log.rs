@@ -1,4 +1,4 @@
-//! What is in a log.
+//! Information about the contents of a log.
 
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -15,7 +15,7 @@ use crate::report::format::{bytes, count, percent, plural};
 use crate::report::json::Numbers;
 use crate::report::{Console, Form};
 
-/// What only a walk through the whole log tells.
+/// Information that needs a walk through the whole log.
 #[derive(Debug, Default)]
 struct Content {
     frames: u64,

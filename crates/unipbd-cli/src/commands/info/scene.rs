@@ -1,4 +1,4 @@
-//! What is in a scene.
+//! Information about the contents of a scene.
 
 use std::path::Path;
 

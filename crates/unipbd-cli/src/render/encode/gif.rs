@@ -152,7 +152,7 @@ impl Clock {
     }
 }
 
-/// What a viewer shows after the frames so far.
+/// The picture that a viewer shows after the frames so far.
 #[derive(Default)]
 struct Shown {
     /// The colour between things: returning to it is always worth a pixel, or moving things would

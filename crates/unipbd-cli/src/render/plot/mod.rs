@@ -19,7 +19,7 @@ use panel::{Frame, Panel};
 /// A quantity over time.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Curve {
-    /// What the legend says.
+    /// Name in the legend.
     pub name: String,
     /// Name of the quantity: it stands above a panel whose curves all are the same.
     pub quantity: String,

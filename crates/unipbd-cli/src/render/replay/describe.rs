@@ -1,4 +1,4 @@
-//! What a page says of its scene.
+//! Description of the scene of a page.
 
 use serde_json::{Value, json};
 use unipbd_core::phase::Phase;
@@ -44,7 +44,7 @@ impl Description<'_> {
             "layers": self.layers(),
             "ramp": ramp,
             "columns": columns,
-            // What closed walls surround: soft layers are cut to it.
+            // The region that closed walls surround: soft layers are cut to it.
             "region": self.region(view),
             "walls": {
                 "color": css(theme.wall_line),

@@ -7,7 +7,7 @@ use crate::kernel::Shape;
 use crate::math::{Real, dot3, larger, real, wide};
 use crate::rigid::Mobility;
 
-/// What a displacement of a body changes in the density error of a particle: along x, along y and by a rotation.
+/// Change of the density error of a particle by a displacement of a body: along x, along y and by a rotation.
 type Change = [f64; 3];
 
 /// Rounds in which multipliers begin or cease to follow their errors.

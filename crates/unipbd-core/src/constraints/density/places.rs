@@ -17,7 +17,7 @@ pub(super) struct Places {
     far: Real,
     /// How far behind the prediction the constraint is taken, as a part of the way of the substep.
     behind: Real,
-    /// What the Courant condition lets a particle go in a substep \[m], and the most that the constraint is taken
+    /// Longest way of a particle in a substep by the Courant condition \[m], and the most that the constraint is taken
     /// behind the prediction: one that is too fast for its substeps is stopped by walls and others, and was never
     /// that far back along its velocity.
     longest_way: Real,

@@ -310,7 +310,7 @@ impl BehindWalls<'_> {
     }
 }
 
-/// What all rows have in common.
+/// Terms common to all rows.
 #[derive(Clone, Copy)]
 struct Terms {
     /// Weight of one neighbour [m^2].

@@ -1,4 +1,4 @@
-//! What the lanes of a block keep from one search to the next: the geometry of their contacts, fixed in the bodies.
+//! Data that the lanes of a block keep between searches: the geometry of their contacts, fixed in the bodies.
 
 use super::bounds::NONE;
 use super::contact_block::{Block, Exact, Lane};

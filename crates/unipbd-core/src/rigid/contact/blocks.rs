@@ -75,7 +75,7 @@ impl Blocks {
         self.slots.clear();
         self.holders.clear();
         for (contact, number) in contacts.iter().zip(0u32..) {
-            // What contacts do not move may be in all lanes at once.
+            // Walls, and bodies that contacts do not move, may be in all lanes at once.
             let moved = |body: &u32| *body != NONE && bodies.is_dynamic(*body as usize);
             let sides = [contact.a, contact.b];
             let first = sides.iter().filter(|body| moved(body)).map(|&body| order.next[body as usize]).max();
@@ -157,7 +157,7 @@ impl Blocks {
             if !is_parallel {
                 open(blocks, anchored);
             }
-            // What was prepared is still near the processor.
+            // The blocks just prepared are still near the processor.
             run(Start { blocks, motion });
         }
         self.live = true;

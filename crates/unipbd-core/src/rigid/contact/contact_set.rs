@@ -19,7 +19,7 @@ pub(super) struct ContactSet {
     /// Contacts of a pair in the last search: a buffer.
     #[serde(skip)]
     pub known: Vec<Contact>,
-    /// What was found, pair by pair.
+    /// Results of the search, pair by pair.
     #[serde(skip)]
     pub found: Vec<Found>,
     /// Contacts that stay, but with other places on their bodies.
@@ -30,7 +30,7 @@ pub(super) struct ContactSet {
     pub elastic: bool,
 }
 
-/// What the search found of a pair: the number of its contacts, and how its bodies lie.
+/// Result of the search for a pair: the number of its contacts, and how its bodies lie.
 #[derive(Clone, Copy)]
 pub(super) struct Found {
     pub pair: u32,

@@ -121,7 +121,7 @@ impl NarrowPhase {
             self.end(&span, blocks, bodies);
         }
         let count = self.pairs.active.len();
-        // What was found is still near the processor.
+        // The contacts just found are still near the processor.
         let chunk = if self.is_parallel() { count } else { NEAR };
         (0..count).step_by(chunk.max(1)).all(|first| {
             self.collide(first..count.min(first + chunk), last_dt, Some(blocks));

@@ -7,7 +7,7 @@ use super::manifold::ROUNDS;
 use crate::simd::wide::{Kernel, WIDE, Wide, run};
 use std::ops::Range;
 
-/// What a pass does with each block.
+/// The operation of a pass on each block.
 #[derive(Clone, Copy)]
 pub(super) enum Rule {
     /// One iteration of normal impulses, friction and rolling resistance.

@@ -201,7 +201,7 @@ impl NarrowPhase {
             and_then(contacts);
             return;
         }
-        // What was prepared is still near the processor.
+        // The contacts just prepared are still near the processor.
         for (contacts, caches) in contacts.chunks_mut(CHUNK).zip(caches.chunks_mut(CHUNK)) {
             contacts.iter_mut().zip(caches).for_each(|(contact, cache)| open(contact, cache));
             and_then(contacts);

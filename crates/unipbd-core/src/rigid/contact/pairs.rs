@@ -22,7 +22,7 @@ pub(super) struct Pair {
     pub bodies: (u32, u32),
 }
 
-/// What a search needs of a pair.
+/// Data of a pair for the search.
 pub(super) struct Meeting {
     /// The piece of the first body of a contact, and the other piece.
     pub pieces: (u32, u32),
@@ -31,7 +31,7 @@ pub(super) struct Meeting {
     pub near: f64,
 }
 
-/// What its contacts need of a pair.
+/// Data of a pair for its contacts.
 pub(super) struct Touching {
     pub wall: u32,
     pub surface: Surface,

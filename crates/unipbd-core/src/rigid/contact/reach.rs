@@ -36,7 +36,7 @@ pub(super) struct Reach {
     pub wanted: Vec<bool>,
     /// Distance of the outline from the centre of mass that rotation moves: 0 for discs \[m].
     levers: Vec<f64>,
-    /// What a pair needs of its bodies, in a row: velocity, speed of the outline by rotation, allowance. The last row is
+    /// Data of a body for its pairs, in a row: velocity, speed of the outline by rotation, allowance. The last row is
     /// that of walls.
     #[serde(skip)]
     rows: Vec<[f64; 4]>,

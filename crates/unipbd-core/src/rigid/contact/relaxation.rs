@@ -18,7 +18,7 @@ const MOST: f64 = 0.8;
 /// heap of 5,000 boxes stays sound with 0.8 at 0.0014; at 0.0054 it boils with 0.7, but not with 0.5.
 const FALL: [f64; 2] = [0.002, 0.01];
 
-/// What a sweep is like.
+/// Kind of a sweep.
 #[derive(Clone, Copy)]
 pub(super) struct Way {
     /// Against the direction of the substep.

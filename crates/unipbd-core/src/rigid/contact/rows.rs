@@ -13,7 +13,8 @@ pub(super) struct Row {
     pub along: (Vector64, Vector64),
     /// Moments of a unit impulse about the centres of mass.
     pub apply: (f64, f64),
-    /// What a rotation of the bodies counts for; differs from `apply` where it is taken at the middle of a substep.
+    /// Moments by which rotations of the bodies are measured; they differ from `apply` where they are taken at the
+    /// middle of a substep.
     pub measure: (f64, f64),
 }
 

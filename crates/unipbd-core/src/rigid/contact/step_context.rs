@@ -15,7 +15,7 @@ pub(super) struct StepContext {
 }
 
 impl StepContext {
-    /// What gravity adds to the displacement of a substep \[m].
+    /// Displacement by gravity in a substep \[m].
     pub fn fall(&self) -> f64 {
         self.gravity.length() * self.dt * self.dt
     }

@@ -40,7 +40,7 @@ pub struct ContactEvent {
 /// Bodies and wall of a pair, `NONE` for none.
 type Key = (u32, u32, u32);
 
-/// What is known of the pairs of a frame.
+/// Records about the pairs of a frame.
 #[derive(Clone, Default)]
 pub(super) struct Watch {
     on: bool,

@@ -79,7 +79,7 @@ enum Form {
     Round(Round),
 }
 
-/// What a point sees of an outline.
+/// An outline near a point.
 #[derive(Clone, Copy, Debug)]
 pub struct Near {
     /// Number of the outline.

@@ -43,7 +43,7 @@ pub(super) struct Polygon {
     inside: Vec<bool>,
 }
 
-/// What a point sees of a polygon.
+/// The part of the kernel around a point that lies inside a polygon, with its gradient.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seen {
     /// Part of the kernel inside, and its gradient [1/m].
