@@ -1,7 +1,7 @@
 //! Contacts and joints of rigid bodies, solved on the displacements of a substep.
 //!
 //! Contacts are constraints on the displacement u of a substep, warm started with the impulses of the
-//! last one and solved by Gauss-Seidel sweeps, there and back (see [`relaxation`]); or by Jacobi sweeps in
+//! last one and solved by Gauss-Seidel sweeps, there and back, over-relaxed; or by Jacobi sweeps in
 //! which a body's mass is split among its contacts (Tonge et al. 2012, "Mass splitting for jitter-free parallel rigid
 //! body simulation"). Overlap never becomes velocity: a separate pass removes it from the positions. A substep calls, in
 //! this order:
