@@ -31,6 +31,11 @@ fn holds_with_grid(name: &str) {
     assert!(missed.is_empty(), "{name} misses:\n  {missed:?}");
 }
 
+/// The usual target, with the pressure grid.
+fn grid() -> SolverSettings {
+    SolverSettings { pressure_grid: PressureGridUse::On, ..settings(0.01) }
+}
+
 /// A wide kernel with the constraint taken early, at the cost of the default setting.
 fn early() -> SolverSettings {
     SolverSettings {
@@ -117,24 +122,21 @@ fn a_column_presses_with_its_weight() {
 #[test]
 fn with_the_grid_water_runs_out_of_a_hole_as_it_does() {
     holds_with_grid("drain");
-    let grid = SolverSettings { pressure_grid: PressureGridUse::On, ..settings(0.01) };
-    let eight = figure("drain", 8, &grid, "discharge coefficient");
+    let eight = figure("drain", 8, &grid(), "discharge coefficient");
     assert!((0.60..=0.67).contains(&eight), "{eight}");
 }
 
 #[test]
 fn with_the_grid_a_disc_that_is_let_go_takes_water_along() {
     holds_with_grid("added_mass");
-    let grid = SolverSettings { pressure_grid: PressureGridUse::On, ..settings(0.01) };
-    let twelve = figure("added_mass", 12, &grid, "largest acceleration error");
+    let twelve = figure("added_mass", 12, &grid(), "largest acceleration error");
     assert!(twelve < 0.03, "in a ring that does not lie on the grid: {twelve}");
 }
 
 #[test]
 fn with_the_grid_light_floats_are_calm() {
     holds_with_grid("light_floats");
-    let grid = SolverSettings { pressure_grid: PressureGridUse::On, ..settings(0.01) };
-    let wide = figure("light_floats", 24, &grid, "speed over sqrt(g b) at density ratio 0.01");
+    let wide = figure("light_floats", 24, &grid(), "speed over sqrt(g b) at density ratio 0.01");
     assert!(wide < 0.03, "a wide one: {wide}");
 }
 
@@ -158,8 +160,7 @@ fn with_the_grid_loads_on_shut_in_water_and_falling_water_stop() {
 
 #[test]
 fn with_the_grid_vortices_between_walls_decay_nearly_as_their_viscosity_says() {
-    let grid = SolverSettings { pressure_grid: PressureGridUse::On, ..settings(0.01) };
-    let fitted = figure("taylor_green_box", 100, &grid, "fitted viscosity over the true one");
+    let fitted = figure("taylor_green_box", 100, &grid(), "fitted viscosity over the true one");
     assert!((0.9..=1.25).contains(&fitted), "{fitted}");
 }
 

@@ -140,6 +140,6 @@ impl Contacts {
 
     /// Twice the gravity times the square of the substep \[m].
     fn fall(&self) -> f64 {
-        2.0 * self.gravity * self.dt * self.dt
+        2.0 * self.moment.fall()
     }
 }

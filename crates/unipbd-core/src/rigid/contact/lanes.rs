@@ -47,12 +47,12 @@ impl Kernel for Pass<'_> {
         match self.rule {
             Rule::Solve { backward: false, over_relaxed } => {
                 for block in self.blocks {
-                    solve(lanes, block, self.motion, if over_relaxed { 1.0 } else { 0.0 });
+                    solve(lanes, block, self.motion, f64::from(over_relaxed));
                 }
             }
             Rule::Solve { backward: true, over_relaxed } => {
                 for block in self.blocks.iter_mut().rev() {
-                    solve(lanes, block, self.motion, if over_relaxed { 1.0 } else { 0.0 });
+                    solve(lanes, block, self.motion, f64::from(over_relaxed));
                 }
             }
             Rule::Separate(how, fall) => {
