@@ -18,6 +18,11 @@ pub(super) struct Bounds {
 impl Bounds {
     pub const EMPTY: Bounds = Bounds { low: Vector64::INFINITY, high: Vector64::NEG_INFINITY };
 
+    /// The longer side \[m].
+    pub fn extent(&self) -> f64 {
+        (self.high - self.low).max_element()
+    }
+
     pub fn grown(&self, by: f64) -> Bounds {
         Bounds { low: self.low - Vector64::splat(by), high: self.high + Vector64::splat(by) }
     }

@@ -1,132 +1,135 @@
-//! Broad phase: pairs of pieces that can touch. Boxes whose pairs are sought are listed in square cells, and cells in
-//! buckets, where all others look for them; boxes much larger than a cell are compared with all.
+//! Broad phase: boxes in a grid, in which those that have moved look for others.
+//!
+//! A box is listed in each cell that it covers, and cells in buckets. Two boxes meet in the cell where both begin. Boxes
+//! much larger than a cell are compared with all.
 
-use super::bounds::Bounds;
-use super::pieces::Pieces;
+use super::bounds::{Bounds, NONE};
 use crate::math::Vector64;
 
 /// Cells on either side of the origin: bodies farther away share the last one.
-const FARTHEST: i32 = 1 << 30;
+const FARTHEST: i32 = 1 << 29;
+/// Boxes of which the median is taken for the side of a cell.
+const SAMPLES: usize = 256;
+/// Columns or rows of cells that a box covers at most; larger ones are in no cell.
+const MOST: i32 = 16;
 
-/// A box, and the cell of its lower left corner.
-type Entry = (u32, [i32; 2]);
+/// A box in a cell.
+#[derive(Clone, Copy)]
+struct Entry {
+    index: u32,
+    /// The next entry of the bucket.
+    next: u32,
+    /// The cell where the box begins.
+    first: [i32; 2],
+}
 
 /// Boxes by place.
 #[derive(Clone, Default)]
 pub(super) struct Broad {
     /// Side of a cell \[m].
     cell: f64,
-    /// The listed boxes, and their corners in cells.
-    corners: Vec<(u32, [[i32; 2]; 2])>,
-    /// Boxes of bucket k: `listed[starts[k]..starts[k + 1]]`.
-    starts: Vec<u32>,
-    listed: Vec<Entry>,
+    /// The cells of the lower left and upper right corner of each box.
+    corners: Vec<[[i32; 2]; 2]>,
+    /// The first entry of each bucket.
+    heads: Vec<u32>,
+    entries: Vec<Entry>,
+    /// Entries that hold no box.
+    free: Vec<u32>,
     large: Vec<u32>,
-    extents: Vec<f64>,
 }
 
 impl Broad {
-    /// Pairs with overlapping boxes, accepted by `allowed`, of pieces (the smaller index first) and of pieces with
-    /// half-planes; sorted. At least one of a pair is in `sought`, which is marked in `is_sought`. Half-plane k has the
-    /// index `pieces + k`.
-    pub fn pairs(
-        &mut self,
-        pieces: &Pieces,
-        fat: &[Bounds],
-        (sought, is_sought): (&[u32], &[bool]),
-        allowed: impl Fn(u32, u32) -> bool,
-        found: &mut Vec<(u32, u32)>,
-    ) {
-        found.clear();
-        self.list(fat, sought);
-        for b in 0..fat.len() as u32 {
-            let of_b = &fat[b as usize];
-            let mut meet = |a: u32| {
-                // A pair of two sought pieces is found from both.
-                let once = b != a && (a < b || !is_sought[b as usize]);
-                if once && of_b.overlaps(&fat[a as usize]) && allowed(a, b) {
-                    found.push((a.min(b), a.max(b)));
-                }
-            };
-            if self.is_large(of_b) {
-                sought.iter().for_each(|&a| meet(a));
-                continue;
-            }
-            self.large.iter().for_each(|&a| meet(a));
-            self.each_near(of_b, meet);
-        }
-        for (plane, index) in pieces.half_planes.iter().zip(fat.len() as u32..) {
-            for &a in sought {
-                if depth_towards(&fat[a as usize], plane.point, plane.normal) < 0.0 && allowed(a, index) {
-                    found.push((a, index));
-                }
-            }
-        }
-        found.sort_unstable();
-        // Two cells of a box may be in one bucket.
-        found.dedup();
-    }
-
-    /// Lists the sought boxes but the large ones in the buckets of the cells they cover.
-    fn list(&mut self, fat: &[Bounds], sought: &[u32]) {
-        self.cell = 2.0 * self.median_extent(fat, sought);
-        self.large.clear();
+    /// Lists all boxes anew, in cells twice as wide as the median of these sizes \[m].
+    pub fn restart(&mut self, boxes: &[Bounds], sizes: impl Iterator<Item = f64>) {
+        self.cell = 2.0 * median(sizes.step_by(boxes.len() / SAMPLES + 1).collect());
+        self.heads.clear();
+        self.heads.resize((2 * boxes.len()).next_power_of_two(), NONE);
         self.corners.clear();
-        for &k in sought {
-            let bounds = &fat[k as usize];
-            if self.is_large(bounds) {
-                self.large.push(k);
-            } else {
-                self.corners.push((k, self.corners_of(bounds)));
-            }
-        }
-        let buckets = (2 * sought.len()).next_power_of_two().max(2);
-        self.starts.clear();
-        self.starts.resize(buckets + 1, 0);
-        self.each_cell(|starts, _, bucket, _| starts[bucket + 1] += 1);
-        for k in 0..buckets {
-            self.starts[k + 1] += self.starts[k];
-        }
-        self.listed.clear();
-        self.listed.resize(self.starts[buckets] as usize, (0, [0; 2]));
-        self.each_cell(|starts, listed, bucket, entry| {
-            listed[starts[bucket] as usize] = entry;
-            starts[bucket] += 1;
-        });
-        self.starts.rotate_right(1);
-        self.starts[0] = 0;
-    }
-
-    fn each_cell(&mut self, mut rule: impl FnMut(&mut [u32], &mut [Entry], usize, Entry)) {
-        let buckets = self.starts.len() - 1;
-        for &(k, [[x0, y0], [x1, y1]]) in &self.corners {
-            for y in y0..=y1 {
-                for x in x0..=x1 {
-                    rule(&mut self.starts, &mut self.listed, bucket([x, y], buckets), (k, [x0, y0]));
-                }
-            }
+        self.entries.clear();
+        self.free.clear();
+        self.large.clear();
+        for (bounds, k) in boxes.iter().zip(0..) {
+            let corners = self.corners_of(bounds);
+            self.corners.push(corners);
+            self.list(k);
         }
     }
 
-    /// Whether a box is compared with all others.
-    fn is_large(&self, bounds: &Bounds) -> bool {
-        let extent = (bounds.high - bounds.low).max_element();
-        extent > 4.0 * self.cell || extent.is_nan() || self.cell.is_nan()
+    /// Number of boxes.
+    pub fn len(&self) -> usize {
+        self.corners.len()
     }
 
-    /// Visits the listed boxes that share with this one the cell where both begin.
-    fn each_near(&self, bounds: &Bounds, mut meet: impl FnMut(u32)) {
-        let [low, high] = self.corners_of(bounds);
-        let buckets = self.starts.len() - 1;
+    /// A box has moved.
+    pub fn set(&mut self, k: u32, bounds: &Bounds) {
+        let corners = self.corners_of(bounds);
+        if corners != self.corners[k as usize] {
+            self.strike_off(k);
+            self.corners[k as usize] = corners;
+            self.list(k);
+        }
+    }
+
+    /// Visits all boxes that may overlap this one; some of them twice, as two cells of a box may be in one bucket.
+    pub fn each_near(&self, k: u32, mut meet: impl FnMut(u32)) {
+        let [low, high] = self.corners[k as usize];
+        if is_large(&[low, high]) {
+            return (0..self.corners.len() as u32).for_each(meet);
+        }
+        self.large.iter().for_each(|&other| meet(other));
         for y in low[1]..=high[1] {
             for x in low[0]..=high[0] {
-                let here = bucket([x, y], buckets);
-                for &(k, first) in &self.listed[self.starts[here] as usize..self.starts[here + 1] as usize] {
-                    if low[0].max(first[0]) == x && low[1].max(first[1]) == y {
-                        meet(k);
+                let mut at = self.heads[self.bucket([x, y])];
+                while let Some(entry) = self.entries.get(at as usize) {
+                    if low[0].max(entry.first[0]) == x && low[1].max(entry.first[1]) == y {
+                        meet(entry.index);
                     }
+                    at = entry.next;
                 }
             }
+        }
+    }
+
+    /// Lists a box in the cells that it covers.
+    fn list(&mut self, k: u32) {
+        let corners = self.corners[k as usize];
+        if is_large(&corners) {
+            return self.large.push(k);
+        }
+        for cell in cells(corners) {
+            let bucket = self.bucket(cell);
+            let entry = Entry { index: k, next: self.heads[bucket], first: corners[0] };
+            self.heads[bucket] = match self.free.pop() {
+                Some(at) => {
+                    self.entries[at as usize] = entry;
+                    at
+                }
+                None => {
+                    self.entries.push(entry);
+                    self.entries.len() as u32 - 1
+                }
+            };
+        }
+    }
+
+    /// Takes a box out of its cells.
+    fn strike_off(&mut self, k: u32) {
+        let corners = self.corners[k as usize];
+        if is_large(&corners) {
+            return self.large.retain(|other| *other != k);
+        }
+        for cell in cells(corners) {
+            let bucket = self.bucket(cell);
+            let (mut before, mut at) = (NONE, self.heads[bucket]);
+            while self.entries[at as usize].index != k {
+                (before, at) = (at, self.entries[at as usize].next);
+            }
+            let next = self.entries[at as usize].next;
+            match self.entries.get_mut(before as usize) {
+                Some(before) => before.next = next,
+                None => self.heads[bucket] = next,
+            }
+            self.free.push(at);
         }
     }
 
@@ -136,16 +139,27 @@ impl Broad {
         [corner(bounds.low), corner(bounds.high)]
     }
 
-    fn median_extent(&mut self, fat: &[Bounds], sought: &[u32]) -> f64 {
-        self.extents.clear();
-        let extent = |&k: &u32| (fat[k as usize].high - fat[k as usize].low).max_element();
-        self.extents.extend(sought.iter().map(extent));
-        if self.extents.is_empty() {
-            return 1.0;
-        }
-        let middle = self.extents.len() / 2;
-        *self.extents.select_nth_unstable_by(middle, f64::total_cmp).1
+    #[inline]
+    fn bucket(&self, [x, y]: [i32; 2]) -> usize {
+        let mixed = (x as u32).wrapping_mul(0x9e37_79b1) ^ (y as u32).wrapping_mul(0x85eb_ca77);
+        (mixed ^ (mixed >> 15)) as usize & (self.heads.len() - 1)
     }
+}
+
+/// Whether a box with these corners is compared with all others: one that has no size is, too.
+fn is_large([low, high]: &[[i32; 2]; 2]) -> bool {
+    (0..2).any(|axis| !(0..MOST).contains(&(high[axis] - low[axis])))
+}
+
+fn cells([low, high]: [[i32; 2]; 2]) -> impl Iterator<Item = [i32; 2]> {
+    (low[1]..=high[1]).flat_map(move |y| (low[0]..=high[0]).map(move |x| [x, y]))
+}
+
+/// Middle of some sizes, or 1 if there are none of use.
+fn median(mut sizes: Vec<f64>) -> f64 {
+    sizes.retain(|size| size.is_normal() && *size > 0.0);
+    let middle = sizes.len() / 2;
+    if sizes.is_empty() { 1.0 } else { *sizes.select_nth_unstable_by(middle, f64::total_cmp).1 }
 }
 
 /// Rounding down by a comparison: without SSE 4.1 `floor` is a call.
@@ -155,13 +169,47 @@ fn column(at: f64) -> i32 {
     towards_zero - i32::from(f64::from(towards_zero) > at)
 }
 
-fn bucket([x, y]: [i32; 2], buckets: usize) -> usize {
-    let mixed = (x as u32).wrapping_mul(0x9e37_79b1) ^ (y as u32).wrapping_mul(0x85eb_ca77);
-    (mixed ^ (mixed >> 15)) as usize & (buckets - 1)
-}
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::rng::Rng;
 
-/// Smallest signed distance of a box from a half-plane.
-fn depth_towards(bounds: &Bounds, point: Vector64, normal: Vector64) -> f64 {
-    let (center, half) = ((bounds.low + bounds.high) * 0.5, (bounds.high - bounds.low) * 0.5);
-    (center - point).dot(normal) - half.dot(normal.abs())
+    fn boxes(random: &mut Rng) -> Vec<Bounds> {
+        let mut number = || random.unit();
+        let mut bounds = |_| {
+            let size = 10f64.powf(4.0 * number() - 3.0);
+            let low = Vector64::new(20.0 * number() - 10.0, 20.0 * number() - 10.0);
+            Bounds { low, high: low + Vector64::new(size * number(), size * number()) }
+        };
+        let mut boxes: Vec<Bounds> = (0..300).map(&mut bounds).collect();
+        boxes.push(Bounds { low: Vector64::NEG_INFINITY, high: Vector64::INFINITY });
+        boxes.push(Bounds { low: Vector64::ONE, high: Vector64::ONE });
+        boxes
+    }
+
+    fn overlapping(boxes: &[Bounds], a: usize) -> Vec<u32> {
+        (0..boxes.len()).filter(|b| boxes[a].overlaps(&boxes[*b])).map(|b| b as u32).collect()
+    }
+
+    #[test]
+    fn boxes_of_all_sizes_meet_those_that_overlap_them() {
+        let mut random = Rng::new(5, 0);
+        let (mut broad, mut now) = (Broad::default(), boxes(&mut random));
+        broad.restart(&now, now.iter().map(|bounds| (bounds.high - bounds.low).max_element()));
+        for _ in 0..4 {
+            for a in 0..now.len() {
+                let mut met = Vec::new();
+                broad.each_near(a as u32, |b| met.push(b));
+                met.retain(|b| now[a].overlaps(&now[*b as usize]));
+                met.sort_unstable();
+                met.dedup();
+                assert_eq!(met, overlapping(&now, a));
+            }
+            // Half of them move.
+            for (k, bounds) in boxes(&mut random).into_iter().enumerate().step_by(2) {
+                now[k] = bounds;
+                broad.set(k as u32, &bounds);
+            }
+        }
+    }
 }

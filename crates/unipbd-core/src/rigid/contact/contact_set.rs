@@ -3,7 +3,8 @@
 use super::bounds::NONE;
 use super::contact_cache::ContactCache;
 use super::manifold::Contact;
-use super::pairs::{Pair, Searched, Span};
+use super::pair::Pair;
+use super::pairs::{Searched, Span};
 use super::pieces::Pieces;
 use super::touch::Touch;
 use crate::math::Vector64;

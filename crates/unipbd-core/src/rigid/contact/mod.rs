@@ -38,6 +38,7 @@ mod loads;
 mod manifold;
 mod narrow_phase;
 mod opening;
+mod pair;
 mod pair_contacts;
 mod pairs;
 mod pieces;

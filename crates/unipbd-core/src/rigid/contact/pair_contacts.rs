@@ -7,7 +7,8 @@ use super::contact_cache::{ContactCache, Rebound};
 use super::contact_set::{ContactSet, Found, Moved};
 use super::frames::Frames;
 use super::manifold::Contact;
-use super::pairs::{Active, Kind, Meeting, Pairs, Searched, Span, Touching};
+use super::pair::{Kind, Meeting, Touching};
+use super::pairs::{Active, Pairs, Searched, Span};
 use super::pieces::Pieces;
 use super::reach::Reach;
 use super::touch::{Points, Touch};
@@ -15,7 +16,7 @@ use crate::math::Vector64;
 
 /// Way of two bodies against each other after which their contacts are searched again, relative to the gap below which
 /// contacts are kept.
-const HOLD: f64 = 0.5;
+const HOLD: f64 = 1.0;
 /// The same of two discs, whose contact is measured anew in each substep.
 const HOLD_OF_DISCS: f64 = 4.0;
 
@@ -38,10 +39,10 @@ pub(super) struct PairContacts<'a> {
 impl PairContacts<'_> {
     /// Appends the contacts of a pair, unless they stay.
     pub fn pair(&self, active: &Active, out: &mut ContactSet) {
-        let (index, span) = (active.index, self.pairs.spans[active.index as usize]);
+        let (index, span) = (active.index, &self.pairs.spans[active.index as usize]);
         let keep = |out: &mut ContactSet| {
             if self.staying.is_none() {
-                self.keep_all(index, span, out);
+                self.keep_all(index, *span, out);
             }
         };
         if !span.frozen && !self.is_wanted(active.bodies) {
@@ -73,7 +74,7 @@ impl PairContacts<'_> {
             self.add(active.bodies, pair, touch, start, out);
         }
         out.touches = touches;
-        self.hand_on(span, near, start, out);
+        self.hand_on(*span, near, start, out);
         let count = (out.contacts.len() - start) as u32;
         out.elastic |= pair.is_some_and(|pair| pair.surface.restitution > 0.0);
         out.found.push(Found { pair: index, count, searched });

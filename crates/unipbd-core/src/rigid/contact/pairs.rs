@@ -2,52 +2,17 @@
 
 use super::bounds::{Bounds, NONE};
 use super::broad::Broad;
+use super::pair::{Pair, may_touch};
 use super::pieces::{Piece, Pieces};
 use super::reach::Reach;
 use super::touch::Points;
 use crate::math::Vector64;
-use crate::rigid::{Bodies, Surface};
+use crate::rigid::Bodies;
 
 /// Frames for which the enlarged boxes hold a body that goes on as it does.
 const ROOM: f64 = 2.0;
 /// Room of the enlarged boxes in addition, relative to the size of the piece.
 const SIDE: f64 = 0.07;
-
-/// Two pieces, or a piece and a half-plane, that may touch.
-#[derive(Clone, Copy, Debug, serde::Serialize, serde::Deserialize)]
-pub(super) struct Pair {
-    /// Indices of both in increasing order; pairs are sorted by them.
-    key: (u32, u32),
-    /// Their bodies, that of the first contact side first; the second is `NONE` for a wall.
-    pub bodies: (u32, u32),
-}
-
-/// Data of a pair for the search.
-pub(super) struct Meeting {
-    /// The piece of the first body of a contact, and the other piece.
-    pub pieces: (u32, u32),
-    pub kind: Kind,
-    /// Gap below which contacts are kept, in addition to the gap required by motion \[m].
-    pub near: f64,
-}
-
-/// Data of a pair for its contacts.
-pub(super) struct Touching {
-    pub wall: u32,
-    pub surface: Surface,
-    pub rolling_arm: f64,
-}
-
-/// The types of two colliding pieces.
-#[derive(Clone, Copy, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
-pub(super) enum Kind {
-    /// Two discs.
-    Discs,
-    /// A piece and a half-plane.
-    OnPlane,
-    /// Two pieces that are not both discs.
-    Pieces,
-}
 
 /// The contacts of a pair in the last search, or at the time it fell asleep.
 #[derive(Clone, Copy, Debug, Default, serde::Serialize, serde::Deserialize)]
@@ -109,6 +74,10 @@ struct Scratch {
     /// Pieces that may leave their enlarged boxes, and a flag for each piece.
     leaving: Vec<u32>,
     leaves: Vec<bool>,
+    /// Whether each piece has a new box, and the boxes that were left last.
+    moved: Vec<bool>,
+    before: Vec<Bounds>,
+    /// Pairs that come to the list.
     found: Vec<(u32, u32)>,
     all: Vec<Pair>,
     spans: Vec<Span>,
@@ -204,16 +173,23 @@ impl Pairs {
         }
         reach.note(bodies);
         reach.allow(bodies, gravity, self.active.iter().map(|pair| pair.bodies));
+        self.scratch.found.clear();
+        self.scratch.moved.clear();
+        self.scratch.moved.resize(pieces.all.len(), false);
         // A body near a fast body can be as fast after a collision: with the pairs known, both get the same allowance.
         for _ in 0..2 {
             self.find_leaving(pieces, bodies, reach);
-            if self.scratch.leaving.is_empty() || !self.renew(pieces, bodies, reach) {
+            let known = self.scratch.found.len();
+            self.renew(pieces, bodies, reach);
+            let found = &self.scratch.found[known..];
+            if found.is_empty() {
                 break;
             }
-            self.list_active(bodies);
             // All others are known.
-            let found = self.scratch.found.iter().map(|&key| Pair::new(pieces, key).bodies);
-            reach.allow_for(bodies, gravity, found);
+            reach.allow_for(bodies, gravity, found.iter().map(|&key| Pair::new(pieces, key).bodies));
+        }
+        if self.replace(pieces) {
+            self.list_active(bodies);
         }
         others
     }
@@ -233,51 +209,96 @@ impl Pairs {
         leaving.extend((0..).zip(leaves.iter()).filter(|(_, leaves)| **leaves).map(|(k, _): (u32, _)| k));
     }
 
-    /// New boxes, with room for several frames, for the pieces that leave theirs, and their pairs; whether the list of
-    /// pairs changed.
-    fn renew(&mut self, pieces: &Pieces, bodies: &Bodies, reach: &Reach) -> bool {
-        self.fat.resize(pieces.all.len(), Bounds::EMPTY);
-        for &k in &self.scratch.leaving {
+    /// New boxes, with room for several frames, for the pieces that leave theirs, and the pairs that come by them.
+    fn renew(&mut self, pieces: &Pieces, bodies: &Bodies, reach: &Reach) {
+        let (count, Scratch { broad, leaving, moved, before, .. }) = (pieces.all.len(), &mut self.scratch);
+        if self.fat.len() != count {
+            self.fat.clear();
+            self.fat.resize(count, Bounds::EMPTY);
+        }
+        before.resize(count, Bounds::EMPTY);
+        for &k in &*leaving {
             let (piece, bounds) = (&pieces.all[k as usize], &pieces.bounds[k as usize]);
-            self.fat[k as usize] = match piece.body {
+            let new = match piece.body {
                 NONE => *bounds,
                 body => swept(bounds, reach, body, ROOM, SIDE * piece.size),
             };
+            before[k as usize] = std::mem::replace(&mut self.fat[k as usize], new);
+            moved[k as usize] = true;
         }
-        let Scratch { broad, leaving, leaves, found, .. } = &mut self.scratch;
-        let allowed = |a: u32, b: u32| may_touch(pieces, &self.excluded, bodies, a.min(b), a.max(b));
-        broad.pairs(pieces, &self.fat, (leaving, leaves), allowed, found);
-        self.replace(pieces)
+        if broad.len() == count {
+            leaving.iter().for_each(|&k| broad.set(k, &self.fat[k as usize]));
+        } else {
+            broad.restart(&self.fat, pieces.bounds.iter().map(Bounds::extent));
+        }
+        self.find_new(pieces, bodies);
     }
 
-    /// Replaces the pairs of the pieces that leave their boxes by those found; pairs that are in the old list keep their
-    /// data. Returns whether the list changed.
+    /// Finds the pairs whose boxes overlap now, and did not before. The list has all that did.
+    fn find_new(&mut self, pieces: &Pieces, bodies: &Bodies) {
+        let (fat, Scratch { broad, leaving, leaves, before, found, .. }) = (&self.fat, &mut self.scratch);
+        let allowed = |a: u32, b: u32| may_touch(pieces, &self.excluded, bodies, a.min(b), a.max(b));
+        for &a in &*leaving {
+            let (now, then) = (&fat[a as usize], &before[a as usize]);
+            broad.each_near(a, |b| {
+                // A pair of two pieces that leave their boxes is found from both.
+                let leaves_too = leaves[b as usize];
+                let once = b != a && (a < b || !leaves_too);
+                let other = if leaves_too { &before[b as usize] } else { &fat[b as usize] };
+                if once && now.overlaps(&fat[b as usize]) && !then.overlaps(other) && allowed(a, b) {
+                    found.push((a.min(b), a.max(b)));
+                }
+            });
+            for (plane, index) in pieces.half_planes.iter().zip(fat.len() as u32..) {
+                if plane.meets(now) && !plane.meets(then) && allowed(a, index) {
+                    found.push((a, index));
+                }
+            }
+        }
+    }
+
+    /// Drops the pairs whose boxes overlap no longer, and adds those found; all others keep their data. Returns whether
+    /// the list changed.
     fn replace(&mut self, pieces: &Pieces) -> bool {
-        let Scratch { leaves, found, all, spans, .. } = &mut self.scratch;
-        let left = |pair: &Pair| {
-            let (a, b) = pair.key;
-            leaves[a as usize] || leaves.get(b as usize).is_some_and(|leaves| *leaves)
+        let (fat, Scratch { moved, found, all, spans, .. }) = (&self.fat, &mut self.scratch);
+        found.sort_unstable();
+        found.dedup();
+        let stays = |pair: &Pair| {
+            let (a, b) = (pair.key.0 as usize, pair.key.1 as usize);
+            match pieces.half_plane(pair.key.1) {
+                Some(plane) => !moved[a] || plane.meets(&fat[a]),
+                None => !(moved[a] || moved[b]) || fat[a].overlaps(&fat[b]),
+            }
         };
-        if self.all.iter().filter(|pair| left(pair)).map(|pair| pair.key).eq(found.iter().copied()) {
+        if found.is_empty() && self.all.iter().all(stays) {
             return false;
         }
-        let mut new = found.iter().copied().peekable();
         let add = |key: (u32, u32), all: &mut Vec<Pair>, spans: &mut Vec<Span>| {
             all.push(Pair::new(pieces, key));
             spans.push(Span::default());
         };
-        for (pair, span) in self.all.drain(..).zip(&self.spans) {
+        let (mut new, mut from) = (found.iter().copied().peekable(), 0);
+        for (k, (pair, span)) in self.all.iter().zip(&self.spans).enumerate() {
+            let stays = stays(pair);
+            if stays && new.peek().is_none_or(|key| *key > pair.key) {
+                continue;
+            }
+            all.extend_from_slice(&self.all[from..k]);
+            spans.extend_from_slice(&self.spans[from..k]);
+            from = if stays { k } else { k + 1 };
             while let Some(key) = new.next_if(|key| *key < pair.key) {
                 add(key, all, spans);
             }
-            if new.next_if_eq(&pair.key).is_some() || !left(&pair) {
-                all.push(pair);
-                spans.push(*span);
-            } else if span.count > 0 && !span.frozen {
+            // It is known already where all boxes are new.
+            new.next_if_eq(&pair.key);
+            if !stays && span.count > 0 && !span.frozen {
                 self.dropped.push(*span);
             }
         }
+        all.extend_from_slice(&self.all[from..]);
+        spans.extend_from_slice(&self.spans[from..]);
         new.for_each(|key| add(key, all, spans));
+        self.all.clear();
         self.spans.clear();
         std::mem::swap(&mut self.all, all);
         std::mem::swap(&mut self.spans, spans);
@@ -300,70 +321,4 @@ fn swept(bounds: &Bounds, reach: &Reach, body: u32, frames: f64, room: f64) -> B
     let way = way.linear * frames;
     let (low, high) = (bounds.low + way.min(Vector64::ZERO), bounds.high + way.max(Vector64::ZERO));
     Bounds { low, high }.grown(off * frames + room)
-}
-
-impl Pair {
-    fn new(pieces: &Pieces, key: (u32, u32)) -> Pair {
-        let (a, b) = ordered(pieces, key);
-        Pair { key, bodies: (pieces.body_of(a), pieces.body_of(b)) }
-    }
-
-    /// The wall of the pair, or `NONE`.
-    pub fn wall(&self, pieces: &Pieces) -> u32 {
-        let (_, b) = ordered(pieces, self.key);
-        pieces.half_plane(b).map_or_else(|| pieces.all[b as usize].wall, |plane| plane.wall)
-    }
-}
-
-/// The pieces of a pair with that of the first body of a contact in front: pieces of walls come first in a key.
-fn ordered(pieces: &Pieces, (a, b): (u32, u32)) -> (u32, u32) {
-    if pieces.body_of(a) == NONE { (b, a) } else { (a, b) }
-}
-
-impl Meeting {
-    pub fn of(pieces: &Pieces, pair: &Pair) -> Meeting {
-        let (a, b) = ordered(pieces, pair.key);
-        let round = |piece: u32| pieces.view(piece).is_round();
-        let (kind, size) = match pieces.all.get(b as usize) {
-            None => (Kind::OnPlane, f64::INFINITY),
-            Some(other) if round(a) && round(b) => (Kind::Discs, other.size),
-            Some(other) => (Kind::Pieces, other.size),
-        };
-        Meeting { pieces: (a, b), kind, near: 0.01 * pieces.all[a as usize].size.min(size) }
-    }
-}
-
-impl Touching {
-    pub fn of(pieces: &Pieces, pair: &Pair) -> Touching {
-        let (a, b) = ordered(pieces, pair.key);
-        let radius = |index: u32, piece: &Piece| match pieces.view(index).is_round() {
-            true => piece.radius,
-            false => f64::INFINITY,
-        };
-        let piece = &pieces.all[a as usize];
-        let (surface, wall, rolling) = match pieces.half_plane(b) {
-            Some(plane) => (&plane.surface, plane.wall, f64::INFINITY),
-            None => {
-                let other = &pieces.all[b as usize];
-                (&other.surface, other.wall, radius(b, other))
-            }
-        };
-        let (surface, rolling) = (piece.surface.combined(surface, pieces.rule), rolling.min(radius(a, piece)));
-        let rolling_arm = if rolling.is_finite() { surface.rolling_friction * rolling } else { 0.0 };
-        Touching { wall, surface, rolling_arm }
-    }
-}
-
-/// Whether two pieces (or a piece and a half-plane) can ever act on each other.
-fn may_touch(pieces: &Pieces, excluded: &[(u32, u32)], bodies: &Bodies, a: u32, b: u32) -> bool {
-    let piece = &pieces.all[a as usize];
-    let dynamic = |body: u32| body != NONE && bodies.is_dynamic(body as usize);
-    let Some(other) = pieces.all.get(b as usize) else { return dynamic(piece.body) };
-    let matched = |body: u32| body != NONE && bodies.elasticity(body as usize).is_some();
-    piece.body != other.body
-        && !matched(piece.body)
-        && !matched(other.body)
-        && (dynamic(piece.body) || dynamic(other.body))
-        && piece.filter.allows(&other.filter)
-        && excluded.binary_search(&(piece.body.min(other.body), piece.body.max(other.body))).is_err()
 }

@@ -48,6 +48,14 @@ pub(super) struct HalfPlane {
     pub surface: Surface,
 }
 
+impl HalfPlane {
+    /// Whether a box reaches into the half-plane.
+    pub fn meets(&self, bounds: &Bounds) -> bool {
+        let (center, half) = ((bounds.low + bounds.high) * 0.5, (bounds.high - bounds.low) * 0.5);
+        (center - self.point).dot(self.normal) - half.dot(self.normal.abs()) < 0.0
+    }
+}
+
 /// View of one piece in the narrow phase.
 #[derive(Clone, Copy)]
 pub(super) struct PieceView<'a> {
