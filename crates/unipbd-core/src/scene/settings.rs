@@ -135,6 +135,14 @@ impl SolverSettings {
 }
 
 impl Scene {
+    /// Whether liquids that rest start compressed by their weight: where particles alone carry it, and all fluids have a
+    /// surface. A wave does not rest, and what hangs together would be moved by the damping.
+    pub(crate) fn starts_under_weight(&self) -> bool {
+        let fills = self.materials().any(|material| material.phase().is_fluid() && material.is_two_sided());
+        let moves = self.has_tied_particles() || !self.wave.is_empty();
+        !(fills || moves || self.uses_pressure_grid() || self.legacy.changes_density())
+    }
+
     /// Where the density constraint is evaluated: what `solver.gradients` says, or else what suits the fluids.
     pub fn gradients(&self) -> GradientPoint {
         let fluids = || self.materials().filter(|material| material.phase().is_fluid());
