@@ -35,6 +35,7 @@ pub struct SolverSettings {
     pub shifting: Option<f64>,
     /// Substeps without gravity before time 0 that bring the start to its rest density: at most this many, fewer
     /// where nothing moves any more. Left out, 100, and up to three times the layers of what is deep and narrow.
+    /// Without the pressure grid, liquids at rest take substeps with gravity instead, until their pressure carries them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub settle_substeps: Option<u32>,
     /// Whether a grid of cells two spacings wide carries the smooth part of the pressure: `"on"`, `"off"`, or

@@ -27,24 +27,34 @@ const SHARED: Real = 1.6;
 /// What rests.
 #[derive(Default)]
 pub(super) struct Resting {
-    /// By id.
-    ids: Vec<bool>,
-    /// Their number, and that of the movable liquid particles.
+    /// The pools that rest: their lowest and highest places, against gravity \[m].
+    pools: Vec<[Real; 2]>,
+    /// The number of the pool of each particle, by id.
+    pool_of: Vec<Option<u32>>,
+    /// Number of particles that rest, and of all movable ones of liquids.
     pub rests: usize,
-    pub liquid: usize,
-    /// Depth of the deepest pool \[m].
-    pub depth: Real,
+    liquid: usize,
 }
 
 impl Resting {
     /// Whether a particle rests.
     pub fn has(&self, id: u32) -> bool {
-        self.ids[id as usize]
+        self.pool_of[id as usize].is_some()
+    }
+
+    /// The lowest and highest place of the pool in which a particle rests.
+    pub fn pool(&self, id: u32) -> Option<[Real; 2]> {
+        self.pool_of[id as usize].map(|pool| self.pools[pool as usize])
     }
 
     /// Whether all liquid rests.
     pub fn is_all(&self) -> bool {
         self.rests > 0 && self.rests == self.liquid
+    }
+
+    /// Depth of the deepest pool \[m].
+    pub fn depth(&self) -> Real {
+        self.pools.iter().map(|[bottom, top]| top - bottom).fold(0.0, Real::max)
     }
 }
 
@@ -88,12 +98,16 @@ pub(super) fn resting(start: &Start<'_>) -> Resting {
     let mut sets = start.connected(&rows);
     let roots: Vec<usize> = rows.iter().map(|&row| sets.root(row as u32) as usize).collect();
     let pools = start.pools(&rows, &roots);
-    let mut found = Resting { ids: vec![false; particles.ids_given() as usize], ..Resting::default() };
-    found.liquid = rows.len();
+    let mut found = Resting { liquid: rows.len(), ..Resting::default() };
+    found.pool_of.resize(particles.ids_given() as usize, None);
+    let mut numbers = vec![None; pools.len()];
     for (&row, &root) in rows.iter().zip(&roots).filter(|(_, root)| pools[**root].rests) {
-        found.ids[particles.id[row] as usize] = true;
+        let number = *numbers[root].get_or_insert(found.pools.len() as u32);
+        if number as usize == found.pools.len() {
+            found.pools.push([pools[root].bottom, pools[root].top]);
+        }
+        found.pool_of[particles.id[row] as usize] = Some(number);
         found.rests += 1;
-        found.depth = found.depth.max(pools[root].top - pools[root].bottom);
     }
     found
 }

@@ -8,13 +8,15 @@ use super::integrate;
 use super::level::{Resting, Start, resting};
 use super::substeps::Choice;
 use super::world::World;
-use crate::math::{Real, Vector, wide};
+use crate::math::{Real, Vector, larger, wide};
 use crate::particles::displaced;
 use crate::phase::Phase;
 use std::f64::consts::PI;
 
 /// A liquid stands still once what carries it differs from its weight by this part, and damping takes no more.
 const STILL: f64 = 0.01;
+/// For this many substeps: a liquid that swings, or is noisy, looks still in one.
+const CALM: u32 = 10;
 /// Substeps for each layer of a liquid: the least, in which its slowest wave dies, and the most, ...
 const LEAST_PER_LAYER: f64 = 1.0;
 const MOST_PER_LAYER: f64 = 4.0;
@@ -22,6 +24,8 @@ const MOST_PER_LAYER: f64 = 4.0;
 const MOST_BESIDE: f64 = 200.0;
 /// Compression at the bottom up to which a liquid starts with its weight: beyond it the substeps are too few to carry it.
 const COMPRESSION: f64 = 0.15;
+/// Strain of a liquid over that of the law, which is of the worst particle, not of the mean.
+const STRAIN: f64 = 0.8;
 /// Least part of a velocity that is kept in a substep.
 const LEAST_KEPT: f64 = 0.5;
 
@@ -39,7 +43,7 @@ impl World {
         let (forces, gravity, spacing) = (&parts.forces, parts.gravity, parts.spacing as Real);
         let found = resting(&Start { now, errors: &errors, forces, gravity, spacing });
         let dt = self.first_substep();
-        let compression = self.fall_in(dt) * f64::from(found.depth) / (self.parts.spacing * self.sound()).powi(2);
+        let compression = self.fall_in(dt) * f64::from(found.depth()) / (self.parts.spacing * self.sound()).powi(2);
         if compression > COMPRESSION { Resting::default() } else { found }
     }
 
@@ -73,21 +77,35 @@ impl World {
     /// Compresses liquids that rest by their weight, in `most` substeps at most.
     pub(super) fn settle_under_weight(&mut self, resting: &Resting, most: Option<u32>) {
         self.clock.dt = self.first_substep();
-        let (layers, fall) = (f64::from(resting.depth) / self.parts.spacing, self.fall_in(self.clock.dt));
+        let (layers, fall) = (f64::from(resting.depth()) / self.parts.spacing, self.fall_in(self.clock.dt));
         // The critical damping of the slowest wave, of which a quarter is as long as the liquid is deep.
         let kept = (1.0 - PI * self.sound() / layers).max(LEAST_KEPT);
         let least = (LEAST_PER_LAYER * layers) as u32;
         let most = most.unwrap_or((MOST_BESIDE + MOST_PER_LAYER * layers) as u32);
-        let mut before = 0.0;
+        self.lower(resting, STRAIN * fall / (self.parts.spacing * self.sound()).powi(2));
+        let (mut before, mut calm) = (0.0_f64, 0);
         for substep in 1..=most {
             let way = self.damped_substep(resting, kept) / fall;
             let (uncarried, damped) = (way - kept * before, (1.0 - kept) * way);
             before = way;
-            if substep > least && damped.abs().max(uncarried.abs()) <= STILL {
+            calm = if damped.abs().max(uncarried.abs()) <= STILL { calm + 1 } else { 0 };
+            if substep > least && calm >= CALM {
                 break;
             }
         }
         self.stop(resting);
+    }
+
+    /// Lowers pools as their weight does: they are strained by this much per way of depth [1/m].
+    fn lower(&mut self, resting: &Resting, strain: f64) {
+        let (particles, down) = (&mut self.parts.particles, self.parts.gravity.normalize_or_zero());
+        let (ids, dense) = (&particles.id, particles.dense());
+        self.parts.parallelism.update(&mut particles.position[..dense], |row, position| {
+            if let Some([bottom, top]) = resting.pool(ids[row]) {
+                let height = larger(-position.dot(down) - bottom, 0.0);
+                *position += down * (strain as Real * height * (top - bottom - 0.5 * height));
+            }
+        });
     }
 
     /// Runs a substep of what rests, keeps this part of its velocities, and returns its mean way along gravity \[m].
