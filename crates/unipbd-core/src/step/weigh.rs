@@ -113,6 +113,7 @@ impl World {
         self.let_fall(resting);
         self.find_neighbors_if_listed();
         self.project_start();
+        self.parts.rigid.iter_mut().for_each(|rigid| rigid.bodies.hold());
         let (particles, parallelism) = (&mut self.parts.particles, self.parts.parallelism);
         let (ids, displacement, dense) = (&particles.id, &particles.displacement, particles.dense());
         let part = (kept / self.clock.dt) as Real;
