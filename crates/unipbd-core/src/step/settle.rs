@@ -2,6 +2,8 @@
 //!
 //! Each projection starts with a fraction of the last displacement, if the push has the same direction (momentum
 //! method). Relaxation of a deep liquid then takes a number of projections linear in the layers, not quadratic.
+//!
+//! Liquids that rest are settled with gravity instead, where particles alone carry their weight.
 
 use super::clock::Clock;
 use super::integrate;

@@ -43,7 +43,7 @@ impl World {
         let (forces, gravity, spacing) = (&parts.forces, parts.gravity, parts.spacing as Real);
         let found = resting(&Start { now, errors: &errors, forces, gravity, spacing });
         let dt = self.first_substep();
-        let compression = self.fall_in(dt) * f64::from(found.depth()) / (self.parts.spacing * self.sound()).powi(2);
+        let compression = self.fall_in(dt) * self.strain() * f64::from(found.depth());
         if compression > COMPRESSION { Resting::default() } else { found }
     }
 
@@ -74,6 +74,12 @@ impl World {
         self.parts.substeps.sound()
     }
 
+    /// Compression by the weight of a layer, over its thickness and the fall in a substep [1/m^2].
+    fn strain(&self) -> f64 {
+        let way = self.parts.spacing * self.sound();
+        1.0 / (way * way)
+    }
+
     /// Compresses liquids that rest by their weight, in `most` substeps at most.
     pub(super) fn settle_under_weight(&mut self, resting: &Resting, most: Option<u32>) {
         self.clock.dt = self.first_substep();
@@ -82,7 +88,7 @@ impl World {
         let kept = (1.0 - PI * self.sound() / layers).max(LEAST_KEPT);
         let least = (LEAST_PER_LAYER * layers) as u32;
         let most = most.unwrap_or((MOST_BESIDE + MOST_PER_LAYER * layers) as u32);
-        self.lower(resting, STRAIN * fall / (self.parts.spacing * self.sound()).powi(2));
+        self.lower(resting, STRAIN * fall * self.strain());
         let (mut before, mut calm) = (0.0_f64, 0);
         for substep in 1..=most {
             let way = self.damped_substep(resting, kept) / fall;
