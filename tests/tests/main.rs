@@ -21,6 +21,7 @@ mod scale_of_bodies;
 mod shape_matching;
 mod smoke;
 mod stages;
+mod starts;
 mod surface_tension;
 mod tunnelling;
 mod viscosity;

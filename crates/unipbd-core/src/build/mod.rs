@@ -62,7 +62,7 @@ fn solver(scene: &Scene, options: BuildOptions) -> Solver {
     let seed = options.seed.unwrap_or(scene.seed);
     let threads = options.threads.unwrap_or_else(available_threads);
     let mut solver = Solver::new(parts(scene, seed), threads);
-    solver.settle(scene.solver.settle_substeps);
+    solver.settle(scene.solver.settle_substeps, scene.starts_under_weight());
     solver
 }
 

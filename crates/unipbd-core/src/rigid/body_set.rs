@@ -257,6 +257,12 @@ impl Bodies {
         self.fluid_loads[id as usize] += Twist { linear: force * dt, angular: torque * dt };
     }
 
+    /// Takes back what the fluid did to the bodies in the running substep: they stay where they are, and feel no load.
+    pub(crate) fn hold(&mut self) {
+        self.displacements.fill(Twist::ZERO);
+        self.fluid_loads.fill(Twist::ZERO);
+    }
+
     /// Ends a substep: x = x_n + u, v = u/dt.
     pub fn integrate(&mut self, dt: f64) {
         for id in 0..self.len() {

@@ -67,6 +67,13 @@ impl Scene {
         self.pressure_grid().used
     }
 
+    /// Whether particles alone carry the pressure around bodies that fluids move: they resist being rearranged, the more the
+    /// higher the pressure, and so slow what sinks and rises in them.
+    pub fn slows_bodies(&self) -> bool {
+        let fluid = self.materials().any(|material| material.phase().is_fluid());
+        fluid && self.body.iter().any(|body| body.kind == BodyKind::Dynamic) && !self.uses_pressure_grid()
+    }
+
     fn where_the_grid_pays(&self) -> PressureGridChoice {
         if let Some((what, _)) = self.pressure_grid_obstacles().first() {
             return PressureGridChoice::off(format!("it does not support {what}"));

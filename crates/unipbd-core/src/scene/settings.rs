@@ -35,6 +35,7 @@ pub struct SolverSettings {
     pub shifting: Option<f64>,
     /// Substeps without gravity before time 0 that bring the start to its rest density: at most this many, fewer
     /// where nothing moves any more. Left out, 100, and up to three times the layers of what is deep and narrow.
+    /// Without the pressure grid, liquids at rest take substeps with gravity instead, until their pressure carries them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub settle_substeps: Option<u32>,
     /// Whether a grid of cells two spacings wide carries the smooth part of the pressure: `"on"`, `"off"`, or
@@ -135,6 +136,14 @@ impl SolverSettings {
 }
 
 impl Scene {
+    /// Whether liquids that rest start compressed by their weight: where particles alone carry it, and all fluids have a
+    /// surface. A wave does not rest, and what hangs together would be moved by the damping.
+    pub(crate) fn starts_under_weight(&self) -> bool {
+        let fills = self.materials().any(|material| material.phase().is_fluid() && material.is_two_sided());
+        let moves = self.has_tied_particles() || !self.wave.is_empty();
+        !(fills || moves || self.uses_pressure_grid() || self.legacy.changes_density())
+    }
+
     /// Where the density constraint is evaluated: what `solver.gradients` says, or else what suits the fluids.
     pub fn gradients(&self) -> GradientPoint {
         let fluids = || self.materials().filter(|material| material.phase().is_fluid());

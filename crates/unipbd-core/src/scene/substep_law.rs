@@ -79,6 +79,11 @@ impl SubstepLaw {
         self.alone && (self.free || loaded)
     }
 
+    /// Way of sound per substep, where particles alone hold the pressure \[spacings]: the law makes C = P/c^2.
+    pub fn sound(&self) -> f64 {
+        1.0 / self.compressibility.sqrt()
+    }
+
     /// Largest pressure over density that surface tension may bring about [m^2/s^2].
     pub fn tension_pressure(&self) -> f64 {
         self.tension.pressure

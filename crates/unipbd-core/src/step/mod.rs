@@ -14,6 +14,7 @@ mod gauges;
 mod gravity;
 mod grid;
 mod integrate;
+mod level;
 mod pipeline;
 mod query;
 mod remove;
@@ -27,6 +28,7 @@ mod threads;
 mod timings;
 mod view;
 mod watched;
+mod weigh;
 mod within_budget;
 mod world;
 

@@ -2,9 +2,12 @@
 //!
 //! Each projection starts with a fraction of the last displacement, if the push has the same direction (momentum
 //! method). Relaxation of a deep liquid then takes a number of projections linear in the layers, not quadratic.
+//!
+//! Liquids that rest are settled with gravity instead, where particles alone carry their weight.
 
 use super::clock::Clock;
 use super::integrate;
+use super::level::Resting;
 use super::pipeline::Stage;
 use super::world::World;
 use crate::math::{Real, Vector, larger};
@@ -30,18 +33,26 @@ const MOMENTUM: Real = 0.9;
 const PROJECTION: [Stage; 4] = [Stage::BeginGroups, Stage::Project, Stage::KeepOutOfWalls, Stage::StoreDensity];
 
 impl World {
-    /// Brings the start to its rest density. `projections` is their largest number; left out, it follows from the
-    /// size of the liquid.
-    pub fn settle(&mut self, projections: Option<u32>) {
-        let projections = projections.unwrap_or_else(|| self.projections_to_settle());
+    /// Brings the start to its rest density. `most` is the largest number of projections; left out, it follows from the
+    /// size of the liquid. Where liquids `weigh`, those that rest end compressed by their weight.
+    pub fn settle(&mut self, most: Option<u32>, weigh: bool) {
+        let projections = most.unwrap_or_else(|| self.projections_to_settle());
         self.clock.dt = self.parts.frame_time;
         self.clock.pressure_limit = self.pressure_limit();
         (self.clock.stiffness, self.clock.settling) = (1.0, true);
         if self.parts.particles.dense() > 0 {
             let still = SETTLED * self.parts.spacing;
             let usual = self.parts.neighbors.keep_skin((SKIN * self.parts.spacing) as Real);
-            (0..projections).find(|_| self.relax_once() <= still);
-            zero_displacements(&mut self.parts.particles);
+            let resting = if weigh && projections > 0 { self.resting() } else { Resting::default() };
+            // Where all rests, the weight settles it too.
+            if !resting.is_all() {
+                (0..projections).find(|_| self.relax_once() <= still);
+                zero_displacements(&mut self.parts.particles);
+            }
+            if resting.rests > 0 {
+                self.settle_under_weight(&resting, most);
+                zero_displacements(&mut self.parts.particles);
+            }
             self.parts.neighbors.keep_skin(usual);
         }
         // The start can be observed like any other moment.
@@ -59,17 +70,21 @@ impl World {
         start_projection(&mut self.parts.particles, self.parts.parallelism);
         self.find_neighbors_if_listed();
         let carried = take_carried(&mut self.parts.particles);
-        for index in 0..self.plan.substep.len() {
-            let stage = self.plan.substep[index];
-            if PROJECTION.contains(&stage) {
-                // None of these stages fails.
-                let _ = self.run(stage);
-            }
-        }
+        self.project_start();
         integrate::carry_remainders(&mut self.parts.particles, self.parts.parallelism);
         let farthest = carry_momentum(&mut self.parts.particles, &carried, self.parts.parallelism);
         integrate::wrap(&mut self.parts.particles, self.parts.neighbors.periodic(), self.parts.parallelism);
         farthest
+    }
+
+    /// Runs the stages of a projection, none of which fails.
+    pub(super) fn project_start(&mut self) {
+        for index in 0..self.plan.substep.len() {
+            let stage = self.plan.substep[index];
+            if PROJECTION.contains(&stage) {
+                let _ = self.run(stage);
+            }
+        }
     }
 }
 

@@ -100,8 +100,8 @@ impl Solver {
     }
 
     /// Projects the start without gravity until it is at rest density.
-    pub(crate) fn settle(&mut self, substeps: Option<u32>) {
-        self.on_threads(|world| world.settle(substeps));
+    pub(crate) fn settle(&mut self, substeps: Option<u32>, weigh: bool) {
+        self.on_threads(|world| world.settle(substeps, weigh));
     }
 
     /// Adds a constraint group behind those of the scene. The stages are planned anew.

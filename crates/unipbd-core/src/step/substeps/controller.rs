@@ -142,6 +142,11 @@ impl SubstepRule {
         (kept * STIFFENING).max(least).min(most).min(1.0)
     }
 
+    /// Way of sound in the compressed particles per substep \[spacings].
+    pub fn sound(&self) -> f64 {
+        self.law.sound()
+    }
+
     /// Whether particles alone hold gas in a closed tank.
     pub fn confines_gas(&self) -> bool {
         self.law.confines_gas
