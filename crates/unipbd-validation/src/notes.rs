@@ -104,6 +104,8 @@ pub const NOTES: &[(&str, &str)] = &[
      from them, else the lowest row falls. Cells within the liquid that are filled less than 0.98 are drawn together: the \
      grid would keep their pores open. Not so at bodies of less than a fiftieth of the density: the gap below a box of a \
      hundredth, 24 dx wide, closed again and again, pumped it, at 0.06 of sqrt(g b), for 0.009 now. \
+     Cells that a light float covers nearly, and that no fluid reaches through an open face, are no liquid: as such \
+     they pushed boxes of a thousandth aside, at 0.02 to 0.22 of sqrt(g b), for less than 0.003 now. \
      Cells that lie within a wall but for a corner hold no particle, and are as deep as the cell they open into: as air \
      they let a full ring fall into them, a disc in it was let go 8 % too slowly at 12 dx, and water at rest around \
      sunk discs moved at 0.5 to 5 dx/s, for 0.05 to 0.1 now. Liquids with a surface must be two cells deep before them: \

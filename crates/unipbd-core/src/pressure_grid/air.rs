@@ -18,8 +18,9 @@ const LEAST_FILL: Real = 0.1;
 /// ends. With one cell, layers slide down ramps up to 4 % too fast in the mean over places, with three 4 % too slowly.
 const CELLS_BEFORE_SLIVERS: usize = 2;
 /// Where bodies cover between these parts of a cell, and fluid fills less than this part of the rest, the cell is air:
-/// drops at a wet body are no liquid around it.
-const PARTLY_BODY: [Real; 2] = [0.05, 0.7];
+/// drops at a wet body are no liquid around it. Were the cells at the ends of a float liquid now and then, they would push
+/// the lightest aside.
+const PARTLY_BODY: [Real; 2] = [0.05, 0.9];
 const DRIPPING: Real = 0.5;
 
 impl System {
