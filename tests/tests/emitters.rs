@@ -35,6 +35,33 @@ fn all_gas_is_gone_a_second_after_the_last_has_had_its_time() {
     assert!(diagnostics.count(Phase::Smoke) > 0, "smoke without a lifetime stays");
 }
 
+#[test]
+fn a_wide_jet_leaves_at_its_full_flow_from_the_start() {
+    for grid in ["off", "on"] {
+        let scene = scene(&format!(
+            r#"
+            spacing = 0.01
+            gravity = [0.0, 0.0]
+            [solver]
+            pressure_grid = "{grid}"
+            [[liquid]]
+            name = "water"
+            [[emitter]]
+            material = "water"
+            position = [0.0, 0.0]
+            width = 0.4
+            speed = 3.0
+            "#
+        ));
+        let mut solver = build(&scene, 2);
+        run(&mut solver, 12, |_| ());
+        let ahead = solver.positions().iter().filter(|x| x.y > 0.0).count() as f64;
+        bars("jet 40 dx wide", |bars| {
+            bars.within(&format!("water ahead over what it should be, grid {grid}"), ahead / 2400.0, 0.96, 1.02);
+        });
+    }
+}
+
 /// A nozzle between two walls at the bottom of a closed box that is full of gas already.
 const BLOCKED: &str = r#"
 spacing = 0.02

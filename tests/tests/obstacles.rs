@@ -1,12 +1,14 @@
 //! An obstacle of any outline is a body of `kind = "static"`: liquids, gas and bodies stay outside of it, also in
 //! its hollows, and the forces of all of them on it can be read.
 
-use crate::outlines::{fluid, list};
-use std::f64::consts::PI;
+use crate::outlines::{fluid, list, star};
+use std::f64::consts::{PI, TAU};
+use std::fmt::Write;
 use unipbd_core::math::wide;
 use unipbd_core::rigid::Body;
+use unipbd_core::scene::Scene;
 use unipbd_core::{Phase, Solver, Vector64};
-use unipbd_tests::{bars, build, run, scene};
+use unipbd_tests::{bars, build, mean_of, run, scene};
 
 /// A trough with slanted sides, eight hundred litres of water in it, and a heavy box on its floor.
 const TROUGH: &str = r#"
@@ -115,7 +117,88 @@ fn gas_fills_a_vault_and_flows_round_it() {
     });
 }
 
-/// Cells of the grid that lie within a wall but for a corner hold no particle: taken for air, water falls into them.
+/// Greatest root of the mean square of the speeds in the last second of four \[spacings/s].
+fn stirred(scene: &Scene) -> f64 {
+    let mut solver = build(scene, 2);
+    let mut most = 0.0f64;
+    run(&mut solver, 180, |_| ());
+    run(&mut solver, 60, |solver| {
+        most = most.max(mean_of(fluid(solver).map(|(_, v)| v.length_squared())).sqrt() / scene.spacing);
+    });
+    most
+}
+
+/// Cells of the grid that lie within a wall but for a corner hold no particle: taken for air, they draw water in.
+#[test]
+fn water_rests_around_sunk_outlines_and_in_a_round_vessel() {
+    let disc = |radius: f64| format!("radius = {radius}");
+    let askew = "size = [0.5, 0.5]\nangle_deg = 28.0".to_owned();
+    let star = format!("outline = [{}]", list(star(0.35, 0.16)));
+    let sunk = [
+        ("disc", 0.05, 1.6, [1.013, 0.76], disc(0.35)),
+        ("disc", 0.05, 1.6, [0.98, 0.72], disc(0.35)),
+        ("disc", 0.04, 1.6, [1.03, 0.76], disc(0.3)),
+        ("disc near the surface", 0.05, 1.2, [1.013, 0.76], disc(0.35)),
+        ("disc half out of it", 0.04, 0.64, [1.01, 0.76], disc(0.35)),
+        ("box", 0.05, 1.6, [1.013, 0.76], askew),
+        ("star", 0.025, 1.6, [1.01, 0.71], star),
+    ];
+    for (name, spacing, depth, [x, y], outline) in sunk {
+        let scene = scene(&format!(
+            r#"
+            spacing = {spacing}
+            [solver]
+            pressure_grid = "on"
+            [[liquid]]
+            name = "water"
+            [[block]]
+            material = "water"
+            min = [0.0, 0.0]
+            max = [2.0, {depth}]
+            [[tank]]
+            min = [0.0, 0.0]
+            max = [2.0, 3.0]
+            [[body]]
+            kind = "static"
+            position = [{x}, {y}]
+            {outline}
+            "#
+        ));
+        bars("water at rest", |bars| {
+            let what = format!("speed around a {name} at ({x}, {y}) [dx/s]");
+            bars.at_most(&what, stirred(&scene), if name.contains("half out") { 0.5 } else { 0.2 });
+        });
+    }
+    let sides: Vec<_> = (0..24).map(|k| Vector64::from_angle(TAU * (f64::from(k) + 0.5) / 24.0)).collect();
+    let spacing = 0.04;
+    let places = (-20..20).flat_map(|i| (-20..8).map(move |j| Vector64::new(f64::from(i) + 0.37, f64::from(j) + 0.21)));
+    let inside = places.map(|x| x * spacing).filter(|x| sides.iter().all(|side| side.dot(*x) < 0.8 - 0.45 * spacing));
+    let planes = sides.iter().fold(String::new(), |mut text, side| {
+        let (at, normal) = (*side * 0.8, -*side);
+        let _ = writeln!(text, "[[half_plane]]\npoint = [{}, {}]\nnormal = [{}, {}]", at.x, at.y, normal.x, normal.y);
+        text
+    });
+    let scene = scene(&format!(
+        r#"
+        spacing = {spacing}
+        [solver]
+        pressure_grid = "on"
+        [[liquid]]
+        name = "water"
+        xsph = 0.05
+        [[points]]
+        material = "water"
+        positions = [{}]
+        {planes}
+        "#,
+        list(inside)
+    ));
+    bars("water at rest", |bars| {
+        bars.at_most("speed in a circle of half-planes [dx/s]", stirred(&scene), 0.5);
+    });
+}
+
+/// As air, these cells would let a full ring fall into them.
 #[test]
 fn water_does_not_fall_in_a_full_ring() {
     let half = |side: f64| {

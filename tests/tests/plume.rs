@@ -75,7 +75,8 @@ fn a_jet_without_air_around_it_rises_as_far_as_it_should() {
     let seconds = if full_size("open gas jet to its end") { f64::INFINITY } else { 1.0 };
     let plume = watch(&scene, seconds);
     bars("open gas jet", |bars| {
-        is_calm(bars, &plume, scene.emitter[0].speed, 0.0015);
+        // One pair among the first thousand particles is 0.002 of them.
+        is_calm(bars, &plume, scene.emitter[0].speed, 0.0025);
         bars.at_most("mean part of the gas with a neighbour nearer than 0.6 dx", plume.crowd.mean(), 0.001);
         bars.within("top of the smoke at 0.83 s [dx]", plume.top / scene.spacing, 0.8 * 77.0, 1.2 * 77.0);
     });

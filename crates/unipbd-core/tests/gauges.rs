@@ -1,8 +1,8 @@
 //! Gauges: readings with a known answer.
 
 use unipbd_core::scene::{
-    Block, BodyDescription, Emitter, ForcePart, Gauge, GaugeKind, HalfPlane, Liquid, PressureGridUse, Scene, Smoke,
-    Tank,
+    Block, BodyDescription, Domain, Emitter, ForcePart, Gauge, GaugeKind, HalfPlane, Liquid, PressureGridUse, Scene,
+    Smoke, Tank,
 };
 use unipbd_core::{BuildOptions, Solver};
 
@@ -89,6 +89,62 @@ fn a_still_tank_reads_its_level_its_pressure_and_its_weight() {
         assert!((floor - fluids).abs() < 1e-9 * floor && contacts == 0.0);
         assert!(flow.abs() < 0.01, "{flow}");
     }
+}
+
+/// A jet 20 spacings wide that falls on a plate without gravity: all its momentum goes into the plate.
+#[test]
+fn with_the_grid_a_jet_presses_on_a_plate_with_its_momentum_and_its_dynamic_pressure() {
+    let (width, speed) = (0.4, 3.0);
+    let mut scene = Scene {
+        spacing: 0.02,
+        gravity: [0.0; 2],
+        liquid: vec![Liquid::new("water", 1000.0)],
+        emitter: vec![Emitter { direction: [0.0, -1.0], ..Emitter::new("water", [0.0, 1.2], width, speed) }],
+        half_plane: vec![HalfPlane { name: "plate".into(), ..HalfPlane::new([0.0; 2], [0.0, 1.0]) }],
+        domain: Domain { remove_below: Some([-2.0, -1.0]), remove_above: Some([2.0, 2.0]), ..Domain::default() },
+        gauge: vec![
+            pressure("middle", [0.0, 0.06]),
+            Gauge { on: Some("plate".into()), ..Gauge::new("plate", GaugeKind::Force) },
+        ],
+        ..Scene::default()
+    };
+    scene.solver.pressure_grid = PressureGridUse::On;
+    let [middle, force] = means(&mut build(&scene), 300, 120)[..] else { panic!("two gauges") };
+    let (stagnation, momentum) = (middle / (500.0 * speed * speed), force / (1000.0 * width * speed * speed));
+    eprintln!("stagnation pressure {stagnation:.4}, force {momentum:.4}");
+    assert!((stagnation - 1.0).abs() < 0.05, "{stagnation}");
+    assert!((momentum - 1.0).abs() < 0.03, "{momentum}");
+}
+
+/// The impulse on the wall is known from its force, which keeps the momentum.
+#[test]
+fn with_the_grid_the_pressures_beside_a_wall_that_a_broken_dam_hits_add_up_to_its_force() {
+    let (spacing, wall) = (0.04, 3.2);
+    let mut scene = Scene {
+        spacing,
+        liquid: vec![Liquid::new("water", 1000.0)],
+        block: vec![Block::new("water", [0.0; 2], [1.0, 2.0])],
+        half_plane: vec![
+            HalfPlane::new([0.0; 2], [0.0, 1.0]),
+            HalfPlane::new([0.0; 2], [1.0, 0.0]),
+            HalfPlane { name: "wall".into(), ..HalfPlane::new([wall, 0.0], [-1.0, 0.0]) },
+        ],
+        gauge: vec![Gauge { on: Some("wall".into()), ..Gauge::new("force", GaugeKind::Force) }],
+        ..Scene::default()
+    };
+    scene.solver.pressure_grid = PressureGridUse::On;
+    let mut solver = build(&scene);
+    let (mut pressures, mut forces) = (0.0, 0.0);
+    for _ in 0..150 {
+        solver.step_frame().expect("it runs");
+        let beside = solver.positions().iter().zip(solver.pressures());
+        let beside = beside.filter(|(x, _)| f64::from(x.x) > wall - 2.0 * spacing);
+        pressures += beside.map(|(_, pressure)| 1000.0 * f64::from(*pressure)).sum::<f64>() * 0.5 * spacing;
+        forces += solver.gauges()[0].value;
+    }
+    let over = pressures / forces;
+    eprintln!("pressures over the force {over:.4}");
+    assert!((over - 1.0).abs() < 0.1, "{over}");
 }
 
 #[test]

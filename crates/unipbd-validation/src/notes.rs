@@ -103,11 +103,17 @@ pub const NOTES: &[(&str, &str)] = &[
      before, waves lost the more, the more substeps there were. Faces closed by walls must be felt like the next ones away \
      from them, else the lowest row falls. Cells within the liquid that are filled less than 0.98 are drawn together: the \
      grid would keep their pores open. Not so at bodies of less than a fiftieth of the density: the gap below a box of a \
-     hundredth, 24 dx wide, closed again and again, pumped it, at 0.06 of sqrt(g b), for 0.009 now. In fluids \
-     without a surface, cells that lie within a wall but for a corner hold no particle, and are as deep as the cell they \
-     open into: as air they let a full ring fall into them, and a disc in it was let go 8 % too slowly at 12 dx.\n\n\
-     Its pressures are those of the grid and of the multipliers added up: read from the momentum of pairs, as without \
-     a grid, they come out 5 to 11 % low, since the grid pushes smoothly whatever the arrangement. The target \
+     hundredth, 24 dx wide, closed again and again, pumped it, at 0.06 of sqrt(g b), for 0.009 now. \
+     Cells that a light float covers nearly, and that no fluid reaches through an open face, are no liquid: as such \
+     they pushed boxes of a thousandth aside, at 0.02 to 0.22 of sqrt(g b), for less than 0.003 now. \
+     Cells that lie within a wall but for a corner hold no particle, and are as deep as the cell they open into: as air \
+     they let a full ring fall into them, a disc in it was let go 8 % too slowly at 12 dx, and water at rest around \
+     sunk discs moved at 0.5 to 5 dx/s, for 0.05 to 0.1 now. Liquids with a surface must be two cells deep before them: \
+     the ends of films run out too fast.\n\n\
+     Its pressures are those of the grid, and of the three tenths of the multipliers that change velocities, added up: with \
+     the whole multipliers a jet read 13 to 19 % too much where it hits a plate, and a wall that a broken dam hits 39 %, \
+     for 1 and -4 % now. Read from the momentum of pairs, as without a grid, pressures come out 5 to 11 % low, since the \
+     grid pushes smoothly whatever the arrangement. The target \
      compression bounds the way of a substep alone (0.8 dx at 1 %, as its root; 0.5 dx for fluids that fill their domain). \
      The fuzzer gives the grid to every second scene that it supports. A wave of 32 dx has an amplitude of a quarter of a \
      cell: what is said of its decay is the noise of that.",

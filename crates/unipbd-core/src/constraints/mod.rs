@@ -19,6 +19,7 @@ use std::ops::BitOr;
 pub use batch::{Batch, Constraint};
 pub(crate) use corrections::CorrectionParts;
 pub use corrections::{Corrections, OutlineLoad};
+pub(crate) use density::GRID_VELOCITY_SHARE;
 pub use density::{Density, DensityMaterial, DensitySettings};
 pub use distance::{Distance, Tether};
 pub use shape_matching::{Member, ShapeMatching};

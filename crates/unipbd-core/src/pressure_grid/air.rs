@@ -14,9 +14,13 @@ use crate::parallel::Parallelism;
 /// its gaps are no air.
 const LEAST_DEPTH: Real = 0.5;
 const LEAST_FILL: Real = 0.1;
+/// Liquids with a surface are so many cells deep before a sliver that counts as liquid: films run out too fast at their
+/// ends. With one cell, layers slide down ramps up to 4 % too fast in the mean over places, with three 4 % too slowly.
+const CELLS_BEFORE_SLIVERS: usize = 2;
 /// Where bodies cover between these parts of a cell, and fluid fills less than this part of the rest, the cell is air:
-/// drops at a wet body are no liquid around it.
-const PARTLY_BODY: [Real; 2] = [0.05, 0.7];
+/// drops at a wet body are no liquid around it. Were the cells at the ends of a float liquid now and then, they would push
+/// the lightest aside.
+const PARTLY_BODY: [Real; 2] = [0.05, 0.9];
 const DRIPPING: Real = 0.5;
 
 impl System {
@@ -45,8 +49,8 @@ impl System {
                     *depth = larger(*depth, LEAST_DEPTH);
                 }
             });
-            self.fill_slivers(openings, lattice.stride());
         }
+        self.fill_slivers(openings, lattice, if fills { 0 } else { CELLS_BEFORE_SLIVERS });
         if !fills && !fields.filling.is_empty() {
             self.leave_out_drips(fields, openings);
         }
@@ -58,21 +62,39 @@ impl System {
         }
     }
 
-    /// Makes cells liquid that lie within walls but for a corner, where they open into liquid: no particle can lie in
-    /// them. As air, they would let a full ring fall into them. (Done for liquids with a surface too, it calms water around
-    /// sunk discs, from 1.0 to 0.05 dx/s, but shallow layers slide down ramps up to 7 % too fast.)
-    fn fill_slivers(&mut self, openings: &Openings, stride: usize) {
-        let (left, lower) = (&openings.left, &openings.lower);
+    /// Makes cells liquid that lie within walls but for a corner, where they open into liquid and none of so many cells
+    /// before them is air: no particle can lie in them. As air, they would draw the liquid in.
+    fn fill_slivers(&mut self, openings: &Openings, lattice: &Lattice, cells_before: usize) {
+        let (left, lower, stride) = (&openings.left, &openings.lower, lattice.stride());
         for cell in openings.slivers.iter().map(|&cell| cell as usize) {
-            let beside = [
-                (left[cell], cell - 1),
-                (left[cell + 1], cell + 1),
-                (lower[cell], cell - stride),
-                (lower[cell + stride], cell + stride),
-            ];
+            let (right, upper) = (cell + 1, cell + stride);
+            let normal = [left[right] - left[cell], lower[upper] - lower[cell]];
+            if self.air_within(openings, lattice, (cell, normal), cells_before) {
+                continue;
+            }
+            let beside =
+                [(left[cell], cell - 1), (left[right], right), (lower[cell], cell - stride), (lower[upper], upper)];
             let open = beside.into_iter().filter(|&(open, other)| open > 0.0 && openings.inverse[other] > 0.0);
             self.depth[cell] = open.map(|(_, other)| self.depth[other]).fold(self.depth[cell], larger);
         }
+    }
+
+    /// Whether one of so many cells from a cell along a direction is air; those that walls hold mostly are not.
+    fn air_within(
+        &self,
+        openings: &Openings,
+        lattice: &Lattice,
+        (cell, direction): (usize, [Real; 2]),
+        cells: usize,
+    ) -> bool {
+        let longest = larger(direction[0].abs(), direction[1].abs());
+        let is_air =
+            |other: usize| self.depth[other] < 0.0 && openings.inverse[other] > 0.0 && !openings.is_sliver(other);
+        (1..=cells).any(|step| {
+            let way =
+                direction.map(|part| if longest > 0.0 { (part / longest * step as Real).round() as i32 } else { 0 });
+            lattice.cell_beside(cell, way).is_none_or(is_air)
+        })
     }
 
     /// Makes cells beside bodies air that hold a few drops only.

@@ -167,6 +167,18 @@ impl Lattice {
         (inside && i < self.width && j < self.height).then(|| (j + 1) * self.stride() + i + 1)
     }
 
+    /// The cell this way from another one, in cells along each axis, if it is one of the box.
+    pub fn cell_beside(&self, cell: usize, way: [i32; 2]) -> Option<usize> {
+        let along = |at: usize, way: i32, cells: usize, repeats: bool| {
+            let at = at as i32 - 1 + way;
+            let at = if repeats { at.rem_euclid(cells as i32) } else { at };
+            (0..cells as i32).contains(&at).then(|| at as usize + 1)
+        };
+        let [repeats_x, repeats_y] = self.images.periods.map(|period| period > 0);
+        let i = along(cell % self.stride(), way[0], self.width, repeats_x)?;
+        Some(along(cell / self.stride(), way[1], self.height, repeats_y)? * self.stride() + i)
+    }
+
     /// Corners of the box \[m].
     pub fn bounds(&self) -> [Vector; 2] {
         let low = self.origin + self.lower * self.cell;

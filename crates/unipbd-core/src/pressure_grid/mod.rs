@@ -30,6 +30,7 @@ mod system;
 mod transfer;
 
 use crate::bytes::held;
+use crate::constraints::GRID_VELOCITY_SHARE;
 use crate::math::{Real, Vector, Vector64, vector, wide};
 use crate::parallel::Parallelism;
 use crate::particles::{Particles, displaced};
@@ -276,7 +277,8 @@ impl PressureGrid {
         });
     }
 
-    /// Adds the pressure of the grid to the multipliers, in their unit: `per_pressure` each, over the inverse mass.
+    /// Adds the pressure of the grid to that part of the multipliers that changes velocities, in their unit:
+    /// `per_pressure` each, over the inverse mass. The rest moves particles alone, and is no pressure.
     pub(crate) fn add_pressure(
         &self,
         particles: &mut Particles,
@@ -291,7 +293,8 @@ impl PressureGrid {
         let factor = per_pressure * lattice.cell / dt * self.mixture.heaviest;
         parallelism.update(&mut particles.multiplier[..rows], |row, multiplier| {
             if inverse_masses[row] > 0.0 {
-                *multiplier += system.pressure_at(lattice, openings, starts[row]) * factor;
+                let of_grid = system.pressure_at(lattice, openings, starts[row]) * factor;
+                *multiplier = GRID_VELOCITY_SHARE * *multiplier + of_grid;
             }
         });
     }

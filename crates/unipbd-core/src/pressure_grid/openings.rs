@@ -109,12 +109,18 @@ impl Openings {
         for column in [&mut self.left, &mut self.lower, &mut self.inverse] {
             lattice.images.copy(column, stride);
         }
-        let inner = lattice.rows().flatten().filter(|&cell| self.inverse[cell] >= 1.0 / LEAST);
-        self.slivers.clear();
-        self.slivers.extend(inner.map(|cell| cell as u32));
+        let mut slivers = std::mem::take(&mut self.slivers);
+        slivers.clear();
+        slivers.extend(lattice.rows().flatten().filter(|&cell| self.is_sliver(cell)).map(|cell| cell as u32));
+        self.slivers = slivers;
         let mut inverse = lattice.rows().flat_map(|row| &self.inverse[row]);
         self.boundless = lattice.images.periods.iter().all(|&period| period > 0) && inverse.all(|&k| k == 1.0);
         true
+    }
+
+    /// Whether less than [`LEAST`] of the surroundings of a cell is open.
+    pub fn is_sliver(&self, cell: usize) -> bool {
+        self.inverse[cell] >= 1.0 / LEAST
     }
 
     /// Memory held \[bytes].

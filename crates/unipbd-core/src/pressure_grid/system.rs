@@ -170,8 +170,8 @@ impl System {
     }
 
     /// Finds the cells inside bodies from the couplings of the fluid, and those at bodies in the air, which no fluid
-    /// reaches and whose pressure is zero, and those at the lightest bodies; couples the cells a body covers as if it were
-    /// fluid of its density: for the preconditioner.
+    /// reaches through an open face and whose pressure is zero, and those at the lightest bodies; couples the cells a
+    /// body covers as if it were fluid of its density: for the preconditioner.
     pub fn mask(
         &mut self,
         (solids, fields): (&Solids, &Fields),
@@ -195,11 +195,14 @@ impl System {
         for &cell in &self.touched {
             let cell = cell as usize;
             // Bodies may reach to the end of the lattice.
-            let dry = |sums: &[[Real; 2]], at: usize| sums.get(at).is_none_or(|[_, weight]| *weight == 0.0);
-            let [dry_x, dry_y] = [(&fields.left, 1), (&fields.lower, stride)]
-                .map(|(sums, next)| dry(sums, cell) && dry(sums, cell + next));
-            let dry = dry_x && dry_y;
-            self.masked[cell] = self.depth[cell] >= 0.0 && (dry || fluid.total[cell] < MASKED);
+            let wet = |axis: usize, sums: &[[Real; 2]], face: usize| match sums.get(face) {
+                Some([_, weight]) if *weight > 0.0 => self.open[axis][face],
+                _ => 0.0,
+            };
+            let of_axes = [(0, &fields.left, 1), (1, &fields.lower, stride)];
+            let open = of_axes.map(|(axis, sums, next)| wet(axis, sums, cell) + wet(axis, sums, cell + next));
+            let reached = smaller(open[0] + open[1], fluid.total[cell]);
+            self.masked[cell] = self.depth[cell] >= 0.0 && reached < MASKED;
         }
         for solid in &solids.solids {
             for face in solids.faces_of(solid) {

@@ -197,10 +197,11 @@ impl Nozzle {
     fn advance_column(&mut self, index: usize, dt: f64, particles: &mut Particles, rows: &RowIndex) {
         let column = &self.columns[index];
         let speed = column.speed * self.state.throttle();
-        self.state.columns[index].progress += speed * dt / column.row;
+        let way = speed * dt / column.row;
+        self.state.columns[index].progress += way;
         while self.state.columns[index].progress >= 1.0 {
             self.state.columns[index].progress -= 1.0;
-            self.let_go(index, particles, rows);
+            self.let_go(index, way, particles, rows);
         }
         let velocity = vector(self.direction * speed);
         for &id in &self.state.columns[index].behind {
@@ -210,8 +211,9 @@ impl Nozzle {
         }
     }
 
-    /// Releases the first particle of a column, with its smoke, and adds a new last one.
-    fn let_go(&mut self, index: usize, particles: &mut Particles, rows: &RowIndex) {
+    /// Releases the first particle of a column, with its smoke, and adds a new last one, which goes this way with the
+    /// others in this substep, in rows.
+    fn let_go(&mut self, index: usize, way: f64, particles: &mut Particles, rows: &RowIndex) {
         let first = self.state.columns[index].behind[0];
         if let Some(row) = row_of(first, particles, rows) {
             particles.inverse_mass[row] = self.carrier.inverse_mass;
@@ -224,7 +226,7 @@ impl Nozzle {
             }
         }
         let progress = self.state.columns[index].progress;
-        let last = self.add_behind(index, ROWS_BEHIND as f64 - progress, particles);
+        let last = self.add_behind(index, ROWS_BEHIND as f64 - progress + way, particles);
         let behind = &mut self.state.columns[index].behind;
         behind.rotate_left(1);
         behind[ROWS_BEHIND - 1] = last;

@@ -114,9 +114,6 @@ pub const LIGHT_FLOATS: Case = Case {
     run: light_floats,
 };
 
-/// Least density ratio of a float that is asked to rest.
-const LIGHTEST: f64 = 0.01;
-
 fn light_floats(trial: &Trial) -> Result<Measured, Failure> {
     let (mut figures, mut cost) = (Vec::new(), Cost::default());
     let all = [
@@ -126,9 +123,7 @@ fn light_floats(trial: &Trial) -> Result<Measured, Failure> {
     ];
     for (of_speed, of_draft, ratio) in all {
         let (speed, draft, spent) = float(trial, ratio)?;
-        // One of a thousandth weighs less than a particle: it lies on the highest ones, and dances.
-        let calm = if ratio < LIGHTEST { Band::OPEN } else { trial.with_grid(Band::between(0.0, 0.03)) };
-        figures.push(Figure::new(of_speed, speed, calm));
+        figures.push(Figure::new(of_speed, speed, trial.with_grid(Band::between(0.0, 0.03))));
         figures.push(Figure::new(of_draft, draft, Band::OPEN));
         cost = cost.and(spent);
     }

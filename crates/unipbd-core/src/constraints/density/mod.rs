@@ -11,6 +11,7 @@ mod pressure;
 mod settings;
 mod solve;
 
+pub(crate) use settings::GRID_VELOCITY_SHARE;
 pub use settings::{DensityMaterial, DensitySettings};
 
 use super::{ConstraintGroup, Corrections, DensityColumns, DensityGroup, Needs, Substep};

@@ -80,7 +80,7 @@ const WHOLE_SHIFT: f64 = 0.15;
 /// Where the pressure grid carries the pressure, velocities follow this part of a displacement: what is left to the
 /// particles is disorder. Followed wholly, a drop drawn out loses 5 % of its energy; not at all, a dam break gains
 /// 0.7 %. Less at low speeds spares drops, but slows ramps by 2 % and the Rayleigh-Taylor instability by 4 %.
-const GRID_VELOCITY_SHARE: Real = 0.3;
+pub(crate) const GRID_VELOCITY_SHARE: Real = 0.3;
 /// Density errors at which shifting ends and is whole: at an edge it would spread into the void.
 const SHIFT_GATE: [Real; 2] = [-0.15, -0.05];
 
