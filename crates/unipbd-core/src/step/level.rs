@@ -1,6 +1,7 @@
 //! Which liquids of a start rest under their weight: those with a level surface and nothing open below it.
 
 use std::collections::BTreeMap;
+use std::ops::Bound;
 
 use super::integrate::BodyForce;
 use crate::constraints::Substep;
@@ -177,7 +178,8 @@ impl Start<'_> {
             (layer.low, layer.high) = (layer.low.min(height), layer.high.max(height));
         }
         for (&(root, material), layer) in &layers {
-            for (_, other) in layers.range((root, material + 1)..(root + 1, 0)) {
+            let later = (Bound::Excluded((root, material)), Bound::Excluded((root + 1, 0)));
+            for (_, other) in layers.range(later) {
                 let shared = layer.high.min(other.high) - layer.low.max(other.low);
                 let differ = layer.inverse_mass != other.inverse_mass;
                 pools[root].rests &= !(differ && shared > SHARED * self.spacing);

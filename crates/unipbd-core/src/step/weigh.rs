@@ -58,7 +58,7 @@ impl World {
     fn first_substep(&mut self) -> f64 {
         let events = self.events.len();
         let substeps = self.choose_substeps();
-        // The first frame chooses again, and tells what there is to tell.
+        // The first frame chooses again, and reports its warnings itself.
         self.events.truncate(events);
         self.choice = Choice::default();
         self.parts.frame_time / f64::from(substeps)
