@@ -121,6 +121,39 @@ fn check_estimates_and_info_describes() {
 }
 
 #[test]
+fn check_tells_where_the_missing_grid_slows_bodies() {
+    let place = Place::new();
+    let floats = |grid: &str, kind: &str| {
+        let text = format!(
+            r#"
+            spacing = 0.05
+            [solver]
+            pressure_grid = "{grid}"
+            [[liquid]]
+            name = "water"
+            [[block]]
+            material = "water"
+            min = [0.0, 0.0]
+            max = [1.0, 0.5]
+            [[tank]]
+            min = [0.0, 0.0]
+            max = [1.0, 1.0]
+            [[body]]
+            kind = "{kind}"
+            position = [0.5, 0.7]
+            radius = 0.1
+            "#
+        );
+        place.write("float.toml", &text);
+        place.run(&["check", "float.toml"]).exits(0).stdout()
+    };
+    for (grid, kind, told) in [("off", "dynamic", true), ("on", "dynamic", false), ("off", "static", false)] {
+        let check = floats(grid, kind);
+        assert_eq!(check.contains("bodies sink"), told, "grid {grid}, {kind} body:\n{check}");
+    }
+}
+
+#[test]
 fn the_schema_describes_every_table_of_a_scene() {
     let text = Place::new().run(&["schema"]).exits(0).stdout();
     let schema: serde_json::Value = serde_json::from_str(&text).unwrap();
