@@ -2,8 +2,19 @@
 
 use super::{Carried, RigidBodies, Tied, near};
 use crate::rigid::{Bodies, Elasticity};
+use std::borrow::Cow;
 
 impl RigidBodies {
+    /// These bodies as a state holds them: contacts have the impulses of their lanes.
+    pub(crate) fn to_save(&self) -> Cow<'_, RigidBodies> {
+        if !self.contacts.lacks_impulses() {
+            return Cow::Borrowed(self);
+        }
+        let mut whole = self.clone();
+        whole.contacts.note_impulses();
+        Cow::Owned(whole)
+    }
+
     /// These bodies at the moment of a saved state; `None` if the state is of another scene or makes no sense.
     pub(crate) fn at_saved(&self, saved: RigidBodies, spacing: f64) -> Option<RigidBodies> {
         let same = self.bodies.has_specs_of(&saved.bodies) && self.sample_ids == saved.sample_ids;

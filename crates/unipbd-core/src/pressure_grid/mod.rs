@@ -19,7 +19,6 @@ mod lattice;
 mod level;
 mod mixture;
 mod momentum;
-
 mod multigrid;
 mod openings;
 mod readings;

@@ -52,7 +52,7 @@ impl Solver {
             section(SMOKE, vec![f64::from(smoke.last_dt()).to_bits()]);
         }
         if let Some(rigid) = &parts.rigid {
-            section(BODIES, bodies::to_words(rigid));
+            section(BODIES, bodies::to_words(&*rigid.to_save()));
         }
         if parts.ropes.len() > 0 {
             section(ROPES, bodies::to_words(&parts.ropes));

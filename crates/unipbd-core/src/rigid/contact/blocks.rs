@@ -180,12 +180,29 @@ impl Blocks {
         if !std::mem::take(&mut self.live) {
             return;
         }
-        for (contact, &slot) in contacts.iter_mut().zip(&self.slots).filter(|(_, slot)| **slot != NONE) {
-            let (block, lane) = (&self.all[slot as usize / WIDE], slot as usize % WIDE);
-            block.give_impulses(lane, contact);
-            if with_geometry {
-                block.give_geometry(lane, contact);
-            }
+        for (number, contact) in contacts.iter_mut().enumerate() {
+            self.give_back_to(number, contact, with_geometry);
+        }
+    }
+
+    /// The same for a copy of one contact.
+    pub fn noted(&self, number: usize, contact: &Contact, with_geometry: bool) -> Contact {
+        let mut noted = *contact;
+        if self.live {
+            self.give_back_to(number, &mut noted, with_geometry);
+        }
+        noted
+    }
+
+    #[inline(always)]
+    fn give_back_to(&self, number: usize, contact: &mut Contact, with_geometry: bool) {
+        if self.slots[number] == NONE {
+            return;
+        }
+        let (at, lane) = self.slot(number);
+        self.all[at].give_impulses(lane, contact);
+        if with_geometry {
+            self.all[at].give_geometry(lane, contact);
         }
     }
 

@@ -187,9 +187,9 @@ mod tests {
     const GRAVITY: Vector64 = Vector64::new(0.0, -9.81);
 
     /// Boxes and discs in columns over a floor, which come down on each other.
-    fn heap() -> (Bodies, Contacts) {
+    fn heap(settings: ContactSettings) -> (Bodies, Contacts) {
         let floor = Wall::half_plane(Vector64::ZERO, Vector64::Y, Surface::with_friction(0.5));
-        let (mut bodies, contacts) = (Bodies::new(0.1), Contacts::new(&[floor], ContactSettings::default()));
+        let (mut bodies, contacts) = (Bodies::new(0.1), Contacts::new(&[floor], settings));
         for k in 0..600 {
             let (column, row) = (f64::from(k % 60), f64::from(k / 60));
             let corners = [(-0.2, -0.2), (0.2, -0.2), (0.2, 0.2), (-0.2, 0.2)];
@@ -232,7 +232,7 @@ mod tests {
 
     #[test]
     fn contacts_that_stay_are_those_of_a_search_that_orders_all() {
-        let (mut bodies, mut contacts) = heap();
+        let (mut bodies, mut contacts) = heap(ContactSettings::default());
         let (mut stayed, mut most) = (0, 0);
         for number in 0..120 {
             let (mut other_bodies, mut ordered) = (bodies.clone(), contacts.clone());
@@ -263,5 +263,22 @@ mod tests {
         }
         println!("{stayed} searches in place, {most} contacts came or went between two orderings at most");
         assert!(stayed > 60 && most > 20);
+    }
+
+    #[test]
+    fn contacts_that_only_lanes_know_are_read_as_if_they_had_been_noted() {
+        let (mut bodies, mut contacts) = heap(ContactSettings { sleep: None, ..ContactSettings::default() });
+        for number in 0..40 {
+            contacts.begin_substep(&mut bodies, DT, GRAVITY);
+            finish(&mut contacts, &mut bodies, number);
+        }
+        assert!(contacts.lacks_impulses());
+        let mut noted = contacts.clone();
+        noted.note_impulses();
+        let read = |contacts: &Contacts| contacts.points().collect::<Vec<_>>();
+        assert!(read(&contacts).iter().any(|point| point.normal_force > 0.0));
+        assert_eq!(read(&contacts), read(&noted));
+        assert!(contacts.linked().eq(noted.linked()));
+        assert!(contacts.linked().count() > 100);
     }
 }

@@ -209,7 +209,6 @@ impl Contacts {
     /// Ends a frame of length `frame_time` \[s]: mean forces on walls, and sleep. Call it before
     /// [`Bodies::finish_frame`].
     pub fn finish_frame(&mut self, bodies: &mut Bodies, frame_time: f64) {
-        self.note_impulses();
         self.blocks.give_loads(&mut bodies.contact_loads, &mut self.wall_impulses);
         // Sleeping bodies load their supports as they did when they fell asleep.
         for (contact, cache) in self.narrow_phase.frozen() {
@@ -232,6 +231,10 @@ impl Contacts {
             *force = std::mem::take(impulse) / frame_time;
         }
         self.narrow_phase.begin_frame(frame_time);
+        if self.settings.sleep.is_some() {
+            // Otherwise they stay in the lanes until they are read.
+            self.note_impulses();
+        }
         if let Some(settings) = &self.settings.sleep {
             let fell_asleep = self.islands.sleep(
                 bodies,
@@ -265,7 +268,19 @@ impl Contacts {
 
     /// The bodies of the contacts that carry a load.
     pub(crate) fn pressed(&self) -> impl Iterator<Item = (u32, u32)> + '_ {
-        self.narrow_phase.contacts().iter().filter(|contact| contact.is_pressed()).map(|contact| (contact.a, contact.b))
+        self.noted().map(|(contact, _)| contact).filter(Contact::is_pressed).map(|contact| (contact.a, contact.b))
+    }
+
+    /// The contacts with the impulses and gaps that they have so far, also where only lanes have them.
+    fn noted(&self) -> impl Iterator<Item = (Contact, &ContactCache)> + '_ {
+        let in_lanes = self.in_lanes();
+        let rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches()).enumerate();
+        rows.map(move |(number, (contact, cache))| (self.blocks.noted(number, contact, in_lanes), cache))
+    }
+
+    /// Whether lanes hold impulses that the contacts do not have yet.
+    pub(crate) fn lacks_impulses(&self) -> bool {
+        self.blocks.live
     }
 
     /// The rows of the contacts that carry a load, as of [`Contacts::note_impulses`].
@@ -312,8 +327,8 @@ impl Contacts {
                 friction_force: point.tangent_impulse / (self.dt * self.dt) + cache.rebound[k].tangent / self.dt,
             }
         };
-        let rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches());
-        rows.flat_map(move |(contact, cache)| (0..contact.points().len()).map(move |k| read(contact, cache, k)))
+        self.noted()
+            .flat_map(move |(contact, cache)| (0..contact.points().len()).map(move |k| read(&contact, cache, k)))
     }
 }
 
