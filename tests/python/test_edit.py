@@ -106,9 +106,9 @@ def test_stepping_within_an_edit_is_refused(sim: up.Simulation) -> None:
             sim.step()
 
 
-def test_scripted_particles_go_their_way(sim: up.Simulation) -> None:
+def test_kinematic_particles_go_their_way(sim: up.Simulation) -> None:
     with sim.edit() as e:
-        e.script([50])
+        e.make_kinematic([50])
         e.velocities[50] = (0.0, 1.0)
     start = sim.positions[50]
     sim.step(30)

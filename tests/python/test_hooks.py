@@ -98,8 +98,8 @@ def test_a_substep_kept_for_later_says_that_it_is_over(sim: up.Simulation) -> No
     assert kept[0].positions.shape == (100, 2)
 
 
-def test_hooks_move_scripted_particles() -> None:
-    sim = free_points([(0.0, 0.0), (5.0, 5.0)], motion="scripted").build()
+def test_hooks_move_kinematic_particles() -> None:
+    sim = free_points([(0.0, 0.0), (5.0, 5.0)], motion="kinematic").build()
     sim.on_substep(lambda s: s.set_velocities([1], (np.cos(s.time), 0.0)))
     sim.step(60)
     np.testing.assert_allclose(sim.positions, [(0, 0), (5 + np.sin(1.0), 5)], atol=0.02)

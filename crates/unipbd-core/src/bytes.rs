@@ -114,7 +114,7 @@ fn damaged(what: &'static str) -> Damage {
 }
 
 /// Memory held by a column \[bytes].
-#[allow(clippy::ptr_arg)] // What counts is the capacity.
+#[allow(clippy::ptr_arg)] // The capacity counts.
 pub(crate) fn held<T>(column: &Vec<T>) -> usize {
     column.capacity() * size_of::<T>()
 }

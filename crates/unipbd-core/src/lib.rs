@@ -10,6 +10,7 @@ pub mod edit;
 pub mod effects;
 mod gauge_kind;
 pub mod kernel;
+#[doc(hidden)]
 pub mod legacy;
 pub mod math;
 pub mod neighbors;
@@ -26,6 +27,7 @@ mod pressure_grid;
 pub mod rigid;
 #[doc(hidden)]
 pub mod rng;
+#[doc(hidden)]
 pub mod rows;
 pub mod scene;
 pub mod shapes;

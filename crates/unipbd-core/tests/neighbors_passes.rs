@@ -289,9 +289,9 @@ fn mixed_viscosity_keeps_momentum_and_drags_nothing_moved_by_a_script() {
     let size: Real = (0..300).map(|row| change[row].length() / traits[row].y).sum();
     assert!(momentum.length() < 1e-5 * size, "{momentum} of {size}");
 
-    let scripted: Vec<_> =
+    let kinematic: Vec<_> =
         traits.iter().enumerate().map(|(row, t)| Vector::new(t.x, if row % 5 == 0 { 0.0 } else { t.y })).collect();
-    xsph_mixed(pairs, kernel(), &set.x, &set.v, &scripted, &mut Records::default(), &mut change);
+    xsph_mixed(pairs, kernel(), &set.x, &set.v, &kinematic, &mut Records::default(), &mut change);
     assert!(change.iter().step_by(5).all(|change| *change == Vector::ZERO));
     assert!(change.iter().all(|change| change.is_finite()) && change[1] != Vector::ZERO);
 }

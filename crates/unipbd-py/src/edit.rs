@@ -70,7 +70,7 @@ pub fn edit(
 fn motion(py: Python<'_>, word: &str) -> PyResult<PointMotion> {
     match word {
         "free" => Ok(PointMotion::Free),
-        "scripted" => Ok(PointMotion::Scripted),
-        _ => Err(errors::edit_message(py, &format!("motion is \"free\" or \"scripted\", not \"{word}\""))),
+        "kinematic" => Ok(PointMotion::Kinematic),
+        _ => Err(errors::edit_message(py, &format!("motion is \"free\" or \"kinematic\", not \"{word}\""))),
     }
 }

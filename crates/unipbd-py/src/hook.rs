@@ -165,7 +165,7 @@ impl Substep {
         slf.get().with_wishes(slf.py(), |wishes| wishes.accelerate(count, std::iter::repeat_n(wanted, count)))
     }
 
-    /// Sets the velocities of these particles: how those moved by a script are moved.
+    /// Sets the velocities of these particles: how kinematic ones are moved.
     fn set_velocities(slf: &Bound<'_, Self>, ids: Vec<u32>, velocities: PyReadonlyArray2<'_, f64>) -> PyResult<()> {
         let velocities = checked(&arrays::rows(&velocities), ids.len())?;
         slf.get().check_speed(&velocities, "moves particles", 1.0, "m/s")?;

@@ -53,6 +53,7 @@ const RENAMED: &[Renamed] = &[
         new: &["body.compliance"],
         reason: "it is in m/N, 0 is rigid, and gives the same shape at every number of substeps",
     },
+    Renamed { old: "points.motion=scripted", new: &[], reason: "write \"kinematic\"" },
     Renamed { old: "contacts.mass_scaling", new: &["legacy.mass_scaling"], reason: FOR_COMPARISON },
     Renamed { old: "gas.viscosity", new: &["gas.xsph", "gas.kinematic_viscosity"], reason: TWO_VISCOSITIES },
 ];

@@ -82,7 +82,7 @@ fn parts(scene: &Scene, seed: u64) -> Parts {
     };
     let mut particles = particles(scene, seed, optional);
     let mut ropes = Ropes::default();
-    scene.rope.iter().for_each(|rope| ropes.lay(rope, scene, &mut particles));
+    scene.rope.iter().for_each(|rope| ropes.add(rope, scene, &mut particles));
     let mut rigid = rigid_bodies(scene, &mut particles);
     if let Some(rigid) = &mut rigid {
         for (number, rope) in scene.rope.iter().enumerate() {
@@ -171,7 +171,7 @@ fn periodic(scene: &Scene) -> Periodic {
     Periodic { x: axis(scene.domain.periodic_x), y: axis(scene.domain.periodic_y) }
 }
 
-/// Materials and settings alone: what new emitters and ropes are made of, and checked with.
+/// Materials and settings alone: new emitters and ropes are made of them, and checked with them.
 fn kit(scene: &Scene) -> Scene {
     Scene {
         spacing: scene.spacing,
@@ -228,8 +228,8 @@ fn rigid_bodies(scene: &Scene, particles: &mut Particles) -> Option<RigidBodies>
     Some(RigidBodies::new(bodies, contacts, met, scene.spacing))
 }
 
-/// Whether bodies that no fluid moves are walls to it by their outlines. What looks for samples of bodies still finds
-/// them: surface tension, fluids that stick to bodies, bodies of particles, sleep, the options of papers.
+/// Whether bodies that no fluid moves are walls to it by their outlines. Surface tension,
+/// fluids that stick to bodies, bodies of particles, sleep and the options of papers still find samples of bodies.
 fn lets_outlines(scene: &Scene) -> bool {
     let tense = scene.liquid.iter().any(|liquid| liquid.surface_tension != 0.0);
     let sticks = scene.body.iter().any(|body| body.slip == Slip::None);

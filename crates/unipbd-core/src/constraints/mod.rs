@@ -18,12 +18,18 @@ use std::ops::BitOr;
 
 pub use batch::{Batch, Constraint};
 pub(crate) use corrections::CorrectionParts;
-pub use corrections::{Corrections, OutlineLoad};
+pub use corrections::Corrections;
+#[doc(hidden)]
+pub use corrections::OutlineLoad;
 pub(crate) use density::GRID_VELOCITY_SHARE;
+#[doc(hidden)]
 pub use density::{Density, DensityMaterial, DensitySettings};
 pub use distance::{Distance, Tether};
+#[doc(hidden)]
 pub use shape_matching::{Member, ShapeMatching};
+#[doc(hidden)]
 pub use surface_tension::SurfaceTension;
+#[doc(hidden)]
 pub use viscosity::Viscosity;
 
 use crate::math::{Real, Vector, Vector64};
@@ -96,6 +102,7 @@ pub struct Substep<'a> {
 }
 
 /// A body that is light beside the fluid it displaces.
+#[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
 pub struct LightBody {
     /// Ids of its samples, from the first to one past the last.
@@ -107,6 +114,7 @@ pub struct LightBody {
 }
 
 /// Bodies that viscous fluids do not slip along.
+#[doc(hidden)]
 #[derive(Clone, Copy)]
 pub struct WithoutSlip<'a> {
     /// Their outlines, where they are predicted to be.
@@ -176,6 +184,7 @@ pub trait ConstraintGroup: Send + Sync {
 }
 
 /// A group that holds the density of the fluids.
+#[doc(hidden)]
 pub trait DensityGroup: ConstraintGroup {
     /// Density errors and multipliers by row, after the last projection.
     fn columns(&self) -> DensityColumns<'_>;
@@ -197,6 +206,7 @@ pub trait DensityGroup: ConstraintGroup {
 }
 
 /// Results of a density group, by row.
+#[doc(hidden)]
 #[derive(Clone, Copy, Debug)]
 pub struct DensityColumns<'a> {
     /// C = rho/rho0 - 1.

@@ -69,13 +69,13 @@ impl RigidBodies {
         text.bytes().fold(0, |mark, byte| mix(mark.rotate_left(5) ^ u64::from(byte)))
     }
 
-    /// Puts a body somewhere else; what slept on it wakes.
+    /// Puts a body somewhere else; bodies that slept on it wake.
     pub(crate) fn place_body(&mut self, body: u32, pose: Pose, time: f64) {
         self.contacts.wake_neighbors(&mut self.bodies, body);
         self.bodies.place(body, pose, time);
     }
 
-    /// Changes properties of a body; what slept with it wakes.
+    /// Changes properties of a body; bodies that slept with it wake.
     pub(crate) fn change_body(&mut self, body: u32, change: &BodyChange, time: f64) {
         self.contacts.wake_neighbors(&mut self.bodies, body);
         self.bodies.change(body, change, time);

@@ -88,7 +88,7 @@ impl Ropes {
     }
 
     /// Adds the points of a rope; `scene` has its material.
-    pub(crate) fn lay(&mut self, rope: &Rope, scene: &Scene, particles: &mut Particles) {
+    pub(crate) fn add(&mut self, rope: &Rope, scene: &Scene, particles: &mut Particles) {
         let Some((index, material)) = scene.material(&rope.material) else { return };
         let pieces = rope.pieces(scene.spacing) as u32;
         let inverse_mass = real(1.0 / material.particle_mass(scene.spacing));

@@ -111,8 +111,8 @@ impl Solver {
                 for row in rows {
                     let density = self.world.parts.materials[usize::from(particles.material[row])].density;
                     particles.inverse_mass[row] = motion.inverse_mass(density * area);
-                    if *motion == PointMotion::Scripted {
-                        particles.note_scripted();
+                    if *motion == PointMotion::Kinematic {
+                        particles.note_kinematic();
                     }
                 }
             }

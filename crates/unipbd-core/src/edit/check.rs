@@ -156,7 +156,7 @@ impl<'a> Checker<'a> {
         self.velocities(&[points.velocity])?;
         finite("temperature", 0, points.temperature)?;
         if material.phase == Phase::Smoke && points.motion != PointMotion::Free {
-            return Err(EditError::Unfit(format!("\"{}\" is smoke: no script moves it", material.name)));
+            return Err(EditError::Unfit(format!("\"{}\" is smoke: it cannot be kinematic", material.name)));
         }
         if material.phase == Phase::Rigid {
             return Err(EditError::Unfit(format!("the particles of \"{}\" belong to its body", material.name)));

@@ -87,7 +87,7 @@ impl Solver {
         let (mut places, mut gone) = (Vec::new(), Vec::new());
         match change {
             WorldChange::AddRope(rope) => {
-                ropes.lay(rope, &parts.kit, &mut parts.particles);
+                ropes.add(rope, &parts.kit, &mut parts.particles);
                 if let Some(rigid) = &mut parts.rigid {
                     ropes.fasten(ropes.len() - 1, rope, parts.spacing, rigid);
                 }

@@ -46,7 +46,7 @@ impl Edit {
         self.with(WorldChange::RemoveBody(body))
     }
 
-    /// Puts the centre of mass of a body somewhere else \[m], at this angle \[rad]. It keeps its velocity; a scripted body
+    /// Puts the centre of mass of a body somewhere else \[m], at this angle \[rad]. It keeps its velocity; a kinematic body
     /// goes on from there.
     #[must_use]
     pub fn move_body(self, body: u32, position: Vector64, angle: f64) -> Self {

@@ -10,13 +10,21 @@ mod smoke;
 mod wind;
 mod xsph;
 
+#[doc(hidden)]
 pub use baroclinic::Baroclinic;
+#[doc(hidden)]
 pub use conduction::Conduction;
+#[doc(hidden)]
 pub use confinement::VorticityConfinement;
+#[doc(hidden)]
 pub use drag::{Drag, DragLaw};
+#[doc(hidden)]
 pub use heating::Heating;
+#[doc(hidden)]
 pub use smoke::{Advected, SmokeAdvection};
+#[doc(hidden)]
 pub use wind::Wind;
+#[doc(hidden)]
 pub use xsph::Xsph;
 
 use crate::bytes::held;

@@ -56,7 +56,7 @@ impl Effect for Xsph {
 
     fn apply(&mut self, now: Substep<'_>, out: &mut Changes) {
         match self.uniform {
-            Some(strength) if !now.particles.any_scripted() => self.apply_uniform(now, strength, out),
+            Some(strength) if !now.particles.any_kinematic() => self.apply_uniform(now, strength, out),
             _ => self.apply_mixed(now, out),
         }
     }

@@ -2,8 +2,10 @@
 
 mod functions;
 
+#[doc(hidden)]
+pub use functions::SlopeAsValue;
 pub(crate) use functions::scaled;
-pub use functions::{Shape, SlopeAsValue, WendlandC2};
+pub use functions::{Shape, WendlandC2};
 
 use crate::math::{Real, real};
 

@@ -19,10 +19,18 @@ mod skin;
 mod sparse;
 pub(crate) mod weigh;
 
+#[doc(hidden)]
 pub use cost::ListCost;
+#[doc(hidden)]
 pub use cursor::Cursor;
+#[doc(hidden)]
 pub use grid::Grid;
-pub use list::{Block, Chunk, Entries, NeighborList};
+pub use list::NeighborList;
+#[doc(hidden)]
+pub use list::{Block, Chunk, Entries};
+pub use search::Neighbors;
 pub(crate) use search::SavedList;
-pub use search::{Neighbors, Prepared, SearchPositions};
+#[doc(hidden)]
+pub use search::{Prepared, SearchPositions};
+#[doc(hidden)]
 pub use skin::{Motion, SkinList};

@@ -63,7 +63,7 @@ macro_rules! columns {
             border: usize,
             next_id: u32,
             optional: OptionalColumns,
-            scripted: bool,
+            kinematic: bool,
         }
 
         impl Particles {
@@ -101,7 +101,7 @@ macro_rules! columns {
                 out.value(self.asleep as u64);
                 out.value(self.border as u64);
                 out.value(self.next_id);
-                let flags = [self.optional.temperature, self.optional.age, self.scripted, self.optional.rest];
+                let flags = [self.optional.temperature, self.optional.age, self.kinematic, self.optional.rest];
                 out.value(flags.into_iter().rev().fold(0_u16, |bits, flag| bits << 1 | u16::from(flag)));
             }
 
@@ -118,7 +118,7 @@ macro_rules! columns {
                     age: flags & 2 != 0,
                     rest: flags & 8 != 0,
                 };
-                particles.scripted = flags & 4 != 0;
+                particles.kinematic = flags & 4 != 0;
                 Ok(particles)
             }
 
@@ -279,13 +279,13 @@ impl Particles {
     }
 
     /// Whether a dense particle is, or ever was, kinematic.
-    pub(crate) fn any_scripted(&self) -> bool {
-        self.scripted
+    pub(crate) fn any_kinematic(&self) -> bool {
+        self.kinematic
     }
 
     /// From now on dense rows may have an inverse mass of 0.
-    pub(crate) fn note_scripted(&mut self) {
-        self.scripted = true;
+    pub(crate) fn note_kinematic(&mut self) {
+        self.kinematic = true;
     }
 
     /// Accelerations by row for the next prediction, zero at first [m/s^2].
@@ -334,7 +334,7 @@ impl Particles {
         if !self.acceleration.is_empty() {
             self.acceleration.push(Vector::ZERO);
         }
-        self.scripted |= new.inverse_mass == 0.0 && new.phase.is_dense();
+        self.kinematic |= new.inverse_mass == 0.0 && new.phase.is_dense();
         if new.phase.is_dense() {
             let last = self.len() - 1;
             self.swap_rows(self.dense, last);

@@ -219,14 +219,14 @@ impl Bodies {
                 }
                 Mover::Script => match self.scripts[id].driven {
                     Some(velocity) => velocity.scaled(dt),
-                    None => self.scripted_displacement(id, time + dt),
+                    None => self.kinematic_displacement(id, time + dt),
                 },
                 _ => Twist::ZERO,
             };
         }
     }
 
-    fn scripted_displacement(&self, id: usize, time: f64) -> Twist {
+    fn kinematic_displacement(&self, id: usize, time: f64) -> Twist {
         let script = &self.scripts[id];
         if script.motion.is_still() {
             return Twist::ZERO;

@@ -13,7 +13,7 @@ const MOST_CELLS: f64 = 1e8;
 /// Properties of a body to be changed; those that are `None` stay.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct BodyChange {
-    /// Whether forces, a script or nothing moves it; a body that becomes kinematic keeps its velocity.
+    /// Whether forces, its motion or nothing moves it; a body that becomes kinematic keeps its velocity.
     pub kind: Option<BodyKind>,
     /// Outline, about the centre of mass, which stays where it is. The mass follows from the density where the body has
     /// one, else it stays; the inertia follows from both.
@@ -165,7 +165,7 @@ impl Bodies {
         self.find_mover(k);
     }
 
-    /// Puts the centre of mass of a body somewhere else, at once. A scripted body goes on from there. `time` is now \[s].
+    /// Puts the centre of mass of a body somewhere else, at once. A kinematic body goes on from there. `time` is now \[s].
     pub(crate) fn place(&mut self, id: u32, pose: Pose, time: f64) {
         let k = id as usize;
         self.poses[k] = pose;

@@ -27,7 +27,7 @@ pub(crate) type Mobility = [[f64; 3]; 3];
 
 /// A contact partner holds a body if its mobility along the contact is at most this part of that of the body.
 const HOLDS: f64 = 0.05;
-/// A body whose mobility along a contact is this part of that of the free body is held: what is left is rounding, and
+/// A body whose mobility along a contact is this part of that of the free body is held: the rest is rounding, and
 /// taking out its direction would take out any other.
 const ROUNDING: f64 = 1e-9;
 /// Rounds over all rows: the bodies of a stack are held from the ground up.

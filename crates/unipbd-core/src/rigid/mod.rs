@@ -16,6 +16,7 @@ pub use crate::scene::BodyKind;
 pub use body_set::Bodies;
 pub use change::BodyChange;
 pub use contact::{ContactEvent, ContactPair, ContactPoint, JointState};
+#[doc(hidden)]
 pub use derived::InverseMass;
 pub(crate) use describe::{joint, specification, strength, waypoints};
 pub(crate) use mobility::{HeldRow, Mobilities, Mobility};

@@ -11,7 +11,7 @@ pub(crate) const FRICTION: f64 = 0.5;
 pub enum BodyKind {
     /// Moved by forces and contacts.
     Dynamic,
-    /// Moved by a script, whatever pushes it.
+    /// Moved along a prescribed path, whatever pushes it.
     Kinematic,
     /// Never moves.
     Static,

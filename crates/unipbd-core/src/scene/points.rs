@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 use crate::math::{Real, real};
 
 /// Particles at places given one by one.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[cfg_attr(feature = "schema", derive(schemars::JsonSchema))]
 #[serde(deny_unknown_fields)]
 pub struct Points {
@@ -33,15 +33,15 @@ pub enum PointMotion {
     /// Forces and constraints.
     #[default]
     Free,
-    /// Its velocity alone, which only a script changes.
-    Scripted,
+    /// Its velocity alone, which only the caller changes.
+    Kinematic,
 }
 
 impl PointMotion {
     /// The inverse mass of a particle of this mass [1/kg].
     pub(crate) fn inverse_mass(self, mass: f64) -> Real {
         match self {
-            PointMotion::Scripted => 0.0,
+            PointMotion::Kinematic => 0.0,
             PointMotion::Free if mass > 0.0 => real(1.0 / mass),
             PointMotion::Free => 0.0,
         }

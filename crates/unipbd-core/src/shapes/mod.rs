@@ -6,10 +6,14 @@ mod decompose;
 mod polygon;
 mod sampling;
 
+#[doc(hidden)]
 pub use core_pieces::{ConvexPiece, Core};
+#[doc(hidden)]
 pub use decompose::convex_decomposition;
+#[doc(hidden)]
 pub use polygon::Moments;
 pub(crate) use polygon::{edges, first_crossing, nearest as nearest_on_polygon};
+#[doc(hidden)]
 pub use sampling::Samples;
 
 use crate::math::{Vector64, direction};

@@ -30,7 +30,7 @@ const ROUGH: f64 = 0.1;
 const FAR: f64 = 1.0;
 /// How long they must have been at rest, in frames...
 const FRAMES: f64 = 30.0;
-/// ...and in the time of a fall by half a spacing: what has just begun to fall is not at rest.
+/// ...and in the time of a fall by half a spacing: a liquid that has just begun to fall is not at rest.
 const FALLS: f64 = 7.0;
 /// Upper limit of the wake distance, in blocks.
 const FARTHEST: i32 = 16;
@@ -96,7 +96,7 @@ impl LiquidSleep {
         self.measure(particles, may);
         self.note_rest(particles);
         self.find_waking();
-        self.find_tiring();
+        self.find_falling_asleep();
     }
 
     /// Selects the sleeping blocks near some points to wake, and no other blocks.
@@ -194,7 +194,7 @@ impl LiquidSleep {
     }
 
     /// Connected blocks that have been at rest long enough fall asleep.
-    fn find_tiring(&mut self) {
+    fn find_falling_asleep(&mut self) {
         self.falling_asleep.clear();
         for (place, &(key, _)) in self.blocks.all().iter().enumerate() {
             let whole = self.blocks.whole(place);

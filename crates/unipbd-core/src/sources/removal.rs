@@ -92,7 +92,7 @@ impl RemovalRules {
         for sink in &self.sinks {
             let allowance = sink.allowance(time, self.frame_time);
             let taken = |row: &u32| {
-                let movable = particles.phase[*row as usize] != Phase::Rigid && !is_scripted(particles, *row as usize);
+                let movable = particles.phase[*row as usize] != Phase::Rigid && !is_kinematic(particles, *row as usize);
                 movable && sink.takes(particles, *row as usize) && rows.binary_search(row).is_err()
             };
             let mut found: Vec<u32> = (0..particles.len() as u32).filter(taken).collect();
@@ -104,7 +104,7 @@ impl RemovalRules {
     }
 
     fn is_expired(&self, particles: &Particles, row: usize) -> bool {
-        if is_scripted(particles, row) {
+        if is_kinematic(particles, row) {
             return false;
         }
         let rule = &self.materials[usize::from(particles.material[row])];
@@ -117,7 +117,7 @@ impl RemovalRules {
     fn is_abandoned(&self, particles: &Particles, row: usize) -> bool {
         let rule = &self.materials[usize::from(particles.material[row])];
         let Some(radius) = rule.keep_radius else { return false };
-        if is_scripted(particles, row) || particles.age[row] < rule.keep_age {
+        if is_kinematic(particles, row) || particles.age[row] < rule.keep_age {
             return false;
         }
         let x = particles.position[row];
@@ -146,6 +146,6 @@ impl RemovalRules {
 }
 
 /// Whether the particle is kinematic, such as a particle held by an emitter.
-fn is_scripted(particles: &Particles, row: usize) -> bool {
+fn is_kinematic(particles: &Particles, row: usize) -> bool {
     row < particles.dense() && particles.inverse_mass[row] == 0.0
 }

@@ -139,7 +139,7 @@ impl World {
             let mass = 1.0 / f64::from(particles.inverse_mass[row]);
             let area = mass / materials[usize::from(particles.material[row])].density;
             let weight = (1.0 - off / band) / band;
-            // Particles moved by a script have no finite mass, and do not flow.
+            // Kinematic particles have no finite mass, and do not flow.
             (beside && area.is_finite()).then(|| -along.perp_dot(wide(particles.velocity[row])) * area * weight)
         };
         // The sum begins at +0.0: of nothing, -0.0 would be shown.

@@ -12,7 +12,7 @@ impl World {
         self.feel(gravity + self.shaking_at(self.clock.time));
     }
 
-    /// Takes over the acceleration of a scene that is shaken at a time \[s]. What sleeps would not feel it change.
+    /// Takes over the acceleration of a scene that is shaken at a time \[s]. Sleeping particles would not feel it change.
     pub fn shake(&mut self, time: f64) {
         if !self.parts.shaking.is_empty() {
             self.feel(self.parts.exact_gravity + self.shaking_at(time));

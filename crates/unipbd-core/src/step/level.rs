@@ -25,7 +25,7 @@ const LEAST_LACK: Real = 0.1;
 /// Liquids of different densities lie in layers if they share less than this height \[spacings].
 const SHARED: Real = 1.6;
 
-/// What rests.
+/// The liquids and layers that rest.
 #[derive(Default)]
 pub(super) struct Resting {
     /// The pools that rest: their lowest and highest places, against gravity \[m].
@@ -59,7 +59,7 @@ impl Resting {
     }
 }
 
-/// What the search sees.
+/// The input of the search for pools that rest.
 pub(super) struct Start<'a> {
     pub now: Substep<'a>,
     /// Density errors by row.

@@ -40,6 +40,7 @@ pub use pipeline::Stage;
 pub use query::{NearestSolid, Query, RayHit, Solid};
 pub use solver::{FrameReport, Solver};
 pub(crate) use stages::ABSURD_SPEED;
+#[doc(hidden)]
 pub use substeps::{Choice, Demand, SubstepRule};
 pub use threads::{MOST_THREADS, thread_count};
 pub use view::SubstepView;

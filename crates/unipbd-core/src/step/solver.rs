@@ -211,7 +211,7 @@ impl Solver {
     /// From now on, uses this many threads.
     pub fn set_threads(&mut self, threads: usize) {
         self.threads = Threads::new(threads);
-        // Until the next step: what looks at the state must not ask for a pool that is gone.
+        // Until the next step: readers of the state must not ask for a pool that is gone.
         self.world.parts.parallelism = Parallelism::Serial;
     }
 

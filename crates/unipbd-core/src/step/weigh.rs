@@ -64,7 +64,7 @@ impl World {
         self.parts.frame_time / f64::from(substeps)
     }
 
-    /// What a substep adds to the way of a fall \[m].
+    /// Growth of the way of a fall in a substep \[m].
     fn fall_in(&self, dt: f64) -> f64 {
         f64::from(self.parts.gravity.length()) * dt * dt
     }

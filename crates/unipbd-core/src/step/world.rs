@@ -57,7 +57,7 @@ pub(crate) struct Parts {
     pub emitters: Option<EmitterSystem>,
     /// Columns of each emitter of the scene; `None` where it has neither emitters nor injectors.
     pub scene_emitters: Option<Vec<usize>>,
-    /// Materials and settings of the scene alone: what new emitters and ropes are made of.
+    /// Materials and settings of the scene alone, for new emitters and ropes.
     pub kit: Scene,
     pub removal: Option<RemovalRules>,
     pub sleep: Option<LiquidSleep>,
@@ -78,7 +78,7 @@ pub(crate) struct Parts {
     /// Number of bodies in the scene, and a mark of them and their joints.
     pub scene_bodies: usize,
     pub scene_mark: u64,
-    /// No bodies, between the walls of the scene: what the first body is added to.
+    /// No bodies, between the walls of the scene: the first body is added to them.
     pub no_bodies: RigidBodies,
     /// Material of the samples of bodies, where fluids see them.
     pub sample_material: Option<MaterialIndex>,

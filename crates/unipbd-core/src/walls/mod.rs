@@ -5,7 +5,13 @@ mod edges;
 mod geometry;
 mod outlines;
 
+#[doc(hidden)]
 pub use coverage::Coverage;
+#[doc(hidden)]
 pub use edges::EdgeTables;
-pub use geometry::{Hit, Shear, Walls};
-pub use outlines::{Moment, OutlineShear, OutlineSpec, Outlines, Place};
+#[doc(hidden)]
+pub use geometry::Shear;
+pub use geometry::{Hit, Walls};
+pub use outlines::Outlines;
+#[doc(hidden)]
+pub use outlines::{Moment, OutlineShear, OutlineSpec, Place};

@@ -110,7 +110,7 @@ fn joints_come_go_and_turn_faster() {
 }
 
 #[test]
-fn a_scripted_body_begins_its_script_where_and_when_it_is_put() {
+fn a_kinematic_body_begins_its_script_where_and_when_it_is_put() {
     let mut solver = build(&free(Substeps::Auto, vec![cube("other", [9.0, 0.0])]));
     step(&mut solver, 1.0);
     let motion = MotionDescription { velocity: [1.0, 0.5], spin_deg: 30.0, ..MotionDescription::default() };

@@ -146,7 +146,7 @@ fn star_rests_on_two_points_in_a_concave_wall() {
 }
 
 #[test]
-fn scripted_bodies_follow_their_scripts() {
+fn kinematic_bodies_follow_their_scripts() {
     let mut world = World::new(&[]);
     let script =
         |motion| BodySpec { kind: BodyKind::Kinematic, motion, ..body(l_shape(), at(1.0, 2.0), Surface::default()) };

@@ -38,7 +38,7 @@ fn a_body_follows_the_end_of_its_rope_that_a_script_carries() {
         let ball = named("last", BodyDescription::disc(0.1, [0.0, -1.1]));
         let mut solver = build(&with_rope(free(substeps, vec![ball]), rope([0.0, 0.0], [0.0, -1.0])));
         step(&mut solver, 1.0);
-        let carry = Edit::new().set_velocities([0], [Vector64::new(2.0, 0.5)]).set_motion([0], PointMotion::Scripted);
+        let carry = Edit::new().set_velocities([0], [Vector64::new(2.0, 0.5)]).set_motion([0], PointMotion::Kinematic);
         solver.apply(&carry).expect("the end is held");
         let mut longest = 0.0f64;
         for _ in 0..240 {

@@ -65,19 +65,19 @@ fn a_faulty_edit_changes_nothing() {
 }
 
 #[test]
-fn points_are_where_they_are_put_and_scripted_ones_keep_their_velocity() {
-    let mut scripted = points("beads", &[[0.0, 0.0]]);
-    (scripted.motion, scripted.velocity) = (PointMotion::Scripted, [0.5, 0.25]);
+fn points_are_where_they_are_put_and_kinematic_ones_keep_their_velocity() {
+    let mut kinematic = points("beads", &[[0.0, 0.0]]);
+    (kinematic.motion, kinematic.velocity) = (PointMotion::Kinematic, [0.5, 0.25]);
     let falling = points("beads", &[[1.0, 5.0], [2.0, 5.0]]);
     let beads = Solid { name: "beads".into(), gravity_factor: 0.5, ..Solid::default() };
-    let scene = Scene { solid: vec![beads], points: vec![falling, scripted], ..Scene::default() };
+    let scene = Scene { solid: vec![beads], points: vec![falling, kinematic], ..Scene::default() };
     let mut solver = build(&scene);
     run(&mut solver, 60);
     assert_eq!(velocity(&solver, 2), Vector64::new(0.5, 0.25));
     assert!((wide(solver.positions()[row(&solver, 2)]) - Vector64::new(0.5, 0.25)).length() < 1e-5);
     assert!((velocity(&solver, 0).y + 0.5 * 9.81).abs() < 1e-4, "half of gravity for a second");
     assert_eq!(solver.stages().len(), 2, "free flight predicts and updates: {:?}", solver.stages());
-    solver.apply(&Edit::new().set_motion([2], PointMotion::Free).set_motion([0], PointMotion::Scripted)).unwrap();
+    solver.apply(&Edit::new().set_motion([2], PointMotion::Free).set_motion([0], PointMotion::Kinematic)).unwrap();
     let held = velocity(&solver, 0);
     run(&mut solver, 1);
     assert_eq!(velocity(&solver, 0), held);
@@ -85,10 +85,10 @@ fn points_are_where_they_are_put_and_scripted_ones_keep_their_velocity() {
 }
 
 #[test]
-fn a_scripted_particle_of_a_uniform_liquid_stays_put() {
+fn a_kinematic_particle_of_a_uniform_liquid_stays_put() {
     let mut solver = build(&liquid());
     let at = wide(solver.positions()[row(&solver, 55)]);
-    let edit = Edit::new().set_velocities([55], [Vector64::ZERO]).set_motion([55], PointMotion::Scripted);
+    let edit = Edit::new().set_velocities([55], [Vector64::ZERO]).set_motion([55], PointMotion::Kinematic);
     solver.apply(&edit).unwrap();
     run(&mut solver, 60);
     assert_eq!(wide(solver.positions()[row(&solver, 55)]), at);

@@ -60,18 +60,18 @@ fn a_tap_is_opened_turned_up_closed_and_taken_away() {
     // Four columns at 2 m/s in the middle, 5/6 of it in the mean of a parabola to a half, for half a second; 12 behind.
     println!("{slow} particles, then {fast}");
     assert!((28..=52).contains(&slow) && (60..=76).contains(&fast), "twice as many at twice the speed");
-    let scripted = |solver: &Solver| {
+    let kinematic = |solver: &Solver| {
         let free = |row: &usize| solver.particles().inverse_masses()[*row] == 0.0;
         (0..solver.ids().len()).filter(free).count()
     };
-    assert_eq!(scripted(&solver), 12, "three rows behind the face");
+    assert_eq!(kinematic(&solver), 12, "three rows behind the face");
     solver.apply(&Edit::new().change_emitter(0, switch(false))).expect("it is there");
-    assert_eq!((emitted(&mut solver, 20), scripted(&solver)), (0, 0));
+    assert_eq!((emitted(&mut solver, 20), kinematic(&solver)), (0, 0));
     assert!(!solver.emitters()[0].running);
     solver.apply(&Edit::new().change_emitter(0, switch(true))).expect("it is there");
     assert!(emitted(&mut solver, 20) > 40 && solver.emitters()[0].running);
     solver.apply(&Edit::new().remove_emitter(0)).expect("it is there");
-    assert_eq!(scripted(&solver), 0, "they are let go");
+    assert_eq!(kinematic(&solver), 0, "they are let go");
     assert_eq!(emitted(&mut solver, 20), 0);
     assert!(solver.emitters()[0].removed);
     assert!(solver.apply(&Edit::new().remove_emitter(0)).is_err());

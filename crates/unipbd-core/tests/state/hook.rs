@@ -97,9 +97,9 @@ fn a_failing_hook_leaves_a_run_that_goes_on_to_the_same_end() {
 }
 
 #[test]
-fn a_hook_moves_scripted_particles_as_it_likes() {
+fn a_hook_moves_kinematic_particles_as_it_likes() {
     let mut solver = build(&liquid());
-    solver.apply(&Edit::new().set_motion([0], PointMotion::Scripted)).unwrap();
+    solver.apply(&Edit::new().set_motion([0], PointMotion::Kinematic)).unwrap();
     for _ in 0..30 {
         let frame = solver.step_frame_with(|view| -> Result<(), SolverError> {
             let row = view.ids().iter().position(|&id| id == 0).unwrap();

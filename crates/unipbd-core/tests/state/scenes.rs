@@ -57,9 +57,9 @@ pub fn plume() -> Scene {
     }
 }
 
-/// Two liquids, gas above them, solid points, a scripted particle.
+/// Two liquids, gas above them, solid points, a kinematic particle.
 pub fn mixed() -> Scene {
-    let scripted = Points { velocity: [0.2, 0.0], motion: PointMotion::Scripted, ..points("oil", &[[1.0, 1.6]]) };
+    let kinematic = Points { velocity: [0.2, 0.0], motion: PointMotion::Kinematic, ..points("oil", &[[1.0, 1.6]]) };
     Scene {
         solver: SolverSettings { substeps: Substeps::Fixed(6), settle_substeps: Some(5), ..SolverSettings::default() },
         liquid: vec![
@@ -80,7 +80,7 @@ pub fn mixed() -> Scene {
             jitter: 0.0,
             temperature: 0.0,
         }],
-        points: vec![points("beads", &[[1.0, 3.5], [1.2, 3.5]]), scripted],
+        points: vec![points("beads", &[[1.0, 3.5], [1.2, 3.5]]), kinematic],
         tank: vec![tank(2.0)],
         ..Scene::default()
     }

@@ -60,7 +60,7 @@ class Builder:
         """Adds particles at `positions`, shape (N, 2) [m].
 
         `velocities` [m/s] is one vector for all of them or an array of shape (N, 2).
-        ``motion="scripted"`` lets only their velocity move them.
+        ``motion="kinematic"`` lets only their velocity move them.
         """
         where = points(positions, "positions", ValueError)
         if velocities is not None:

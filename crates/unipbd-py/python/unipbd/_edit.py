@@ -164,7 +164,7 @@ class Edit:
     ) -> None:
         """Adds particles of a material at `positions`, shape (N, 2) [m].
 
-        `velocities` [m/s] is one vector or an array of shape (N, 2). With ``motion="scripted"`` only
+        `velocities` [m/s] is one vector or an array of shape (N, 2). With ``motion="kinematic"`` only
         their velocity moves them. Their ids are in `added` after the block.
         """
         where = points(positions, "positions", EditError)
@@ -300,12 +300,12 @@ class Edit:
                 return number
         raise EditError(f"there is no emitter {emitter!r}")
 
-    def script(self, which: Any) -> None:
+    def make_kinematic(self, which: Any) -> None:
         """From now on only their velocity moves these particles, and nothing but you changes it."""
-        self._motions.append(("motion", self.ids[self._rows(which)].tolist(), "scripted"))
+        self._motions.append(("motion", self.ids[self._rows(which)].tolist(), "kinematic"))
 
     def free(self, which: Any) -> None:
-        """Lets particles go that a script has moved."""
+        """Lets kinematic particles go."""
         self._motions.append(("motion", self.ids[self._rows(which)].tolist(), "free"))
 
     def _rows(self, key: Any) -> npt.NDArray[np.intp]:

@@ -128,7 +128,7 @@ class Observable(World):
 
     @property
     def inverse_masses(self) -> Floats:
-        """Inverse masses [1/kg], float32, shape (N,); 0 for what a script moves, and for smoke."""
+        """Inverse masses [1/kg], float32, shape (N,); 0 for kinematic ones, and for smoke."""
         return self._native.inverse_masses()
 
     @property

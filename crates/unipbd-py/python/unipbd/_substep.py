@@ -62,7 +62,7 @@ class Particles(Generic[Native]):
 
     @property
     def inverse_masses(self) -> Floats:
-        """Inverse masses [1/kg], float32, shape (N,); 0 for what a script moves."""
+        """Inverse masses [1/kg], float32, shape (N,); 0 for kinematic ones."""
         return self._native.inverse_masses
 
     def __len__(self) -> int:
@@ -89,7 +89,7 @@ class Substep(Particles[_native.Substep]):
     def add_acceleration(self, acceleration: npt.ArrayLike) -> None:
         """Adds an acceleration [m/s^2] for this substep: shape (N, 2), or one vector for all.
 
-        Particles moved by a script, smoke and the samples of bodies do not feel it; a body is pushed
+        Kinematic particles, smoke and the samples of bodies do not feel it; a body is pushed
         by `SubstepBody.push`.
         """
         array = numbers(acceleration, "accelerations", ValueError)
@@ -99,7 +99,7 @@ class Substep(Particles[_native.Substep]):
             self._native.add_accelerations(pairs(array, len(self), "accelerations", ValueError))
 
     def set_velocities(self, ids: npt.ArrayLike, velocities: npt.ArrayLike) -> None:
-        """Sets velocities [m/s] of some particles by id: how those moved by a script are moved.
+        """Sets velocities [m/s] of some particles by id: how kinematic ones are moved.
 
         `velocities` is one vector or an array of shape (M, 2).
         """

@@ -21,8 +21,8 @@ pub struct DensitySettings {
     pub gradients: GradientPoint,
     /// The inverse mass of all dense particles, where they have but one [1/kg].
     pub uniform_inverse_mass: Option<Real>,
-    /// Whether walls [uphold](crate::walls::Coverage::upholding) the lowest row: of liquids, which have a level. What
-    /// fills its domain has none, and would only be held back along the walls.
+    /// Whether walls [uphold](crate::walls::Coverage::upholding) the lowest row: of liquids, which have a level. Fluids
+    /// that fill their domain have none, and would only be held back along the walls.
     pub upheld: bool,
     /// Pair repulsion, where there is gas.
     pub repulsion: Option<Reach>,
@@ -49,7 +49,7 @@ pub struct DensityMaterial {
     pub response_min: Real,
     /// The same for kinematic particles, whose own response is missing from the denominator: their weak contacts must
     /// not throw other particles [1/(kg m^2)].
-    pub scripted_response_min: Real,
+    pub kinematic_response_min: Real,
     /// Mass of a particle \[kg]: times the pressure limit it bounds the multiplier.
     pub mass: Real,
     /// How far it is shifted down the gradient of the kernel sum, to even out the arrangement [m^2].
@@ -64,7 +64,7 @@ const GAS_GATE: f64 = -0.3;
 /// The denominator of a particle that resists dilation too is at least this part of its value at rest.
 const FILLED_RESPONSE_FLOOR: f64 = 0.5;
 /// The denominator of a kinematic particle, of any fluid, is at least this part of its value at rest.
-const SCRIPTED_RESPONSE_FLOOR: f64 = 0.5;
+const KINEMATIC_RESPONSE_FLOOR: f64 = 0.5;
 /// Gas particles nearer than this many spacings repel each other...
 const REPULSION_REACH: f64 = 0.8;
 /// ...as much as at this many spacings where they are nearer still: particles thrown together in one
@@ -77,8 +77,8 @@ const FARTHEST_SHIFT: f64 = 0.05;
 /// Where the fastest goes less far in a substep than this, all are shifted in proportion: an arrangement is
 /// strained by the way it goes, however many substeps that takes, and what rests is left alone \[spacings].
 const WHOLE_SHIFT: f64 = 0.15;
-/// Where the pressure grid carries the pressure, velocities follow this part of a displacement: what is left to the
-/// particles is disorder. Followed wholly, a drop drawn out loses 5 % of its energy; not at all, a dam break gains
+/// Where the pressure grid carries the pressure, velocities follow this part of a displacement: disorder is left
+/// to the particles. Followed wholly, a drop drawn out loses 5 % of its energy; not at all, a dam break gains
 /// 0.7 %. Less at low speeds spares drops, but slows ramps by 2 % and the Rayleigh-Taylor instability by 4 %.
 pub(crate) const GRID_VELOCITY_SHARE: Real = 0.3;
 /// Density errors at which shifting ends and is whole: at an edge it would spread into the void.
@@ -125,7 +125,7 @@ impl DensityMaterial {
             multiplier_min: 0.0,
             gate: Real::NEG_INFINITY,
             response_min: real(1e-6 * response),
-            scripted_response_min: real(SCRIPTED_RESPONSE_FLOOR * response),
+            kinematic_response_min: real(KINEMATIC_RESPONSE_FLOOR * response),
             mass: real(mass),
             shifting: 0.0,
             repulsion: 0.0,
@@ -158,7 +158,7 @@ impl DensityMaterial {
         multiplier_min: 0.0,
         gate: Real::NEG_INFINITY,
         response_min: 1.0,
-        scripted_response_min: 1.0,
+        kinematic_response_min: 1.0,
         mass: 0.0,
         shifting: 0.0,
         repulsion: 0.0,

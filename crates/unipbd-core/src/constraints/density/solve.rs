@@ -23,7 +23,7 @@ impl<K: Shape> Density<K> {
             positions: points.value,
             gradient_positions: points.other_gradient(),
             weights: match self.settings.uniform_inverse_mass {
-                Some(inverse_mass) if !now.particles.any_scripted() => Weights::Uniform(inverse_mass),
+                Some(inverse_mass) if !now.particles.any_kinematic() => Weights::Uniform(inverse_mass),
                 _ => Weights::Column(now.particles.inverse_masses()),
             },
             unit: self.settings.unit,
@@ -382,9 +382,9 @@ impl DensityMaterial {
     ) -> Real {
         // A kinematic particle may push, never pull: its own response is missing from the
         // denominator.
-        let scripted = inverse_mass == 0.0;
-        let least = if scripted { 0.0 } else { self.multiplier_min };
-        let floor = if scripted { self.scripted_response_min } else { self.response_min };
+        let kinematic = inverse_mass == 0.0;
+        let least = if kinematic { 0.0 } else { self.multiplier_min };
+        let floor = if kinematic { self.kinematic_response_min } else { self.response_min };
         let new = self.unbounded(old, error, larger(response, floor), stiffness);
         // A confined particle must not push harder the shorter the substep is.
         let limit = limit * self.mass;

@@ -100,7 +100,7 @@ impl Member {
     }
 
     /// Displaces the samples of a soft body as their springs do in a substep of this length \[s] where nothing else moves
-    /// them from `starts`: what the iterations start from, so that at rest a body lies as its springs balance its weight,
+    /// them from `starts`. The iterations start there, so that at rest a body lies as its springs balance its weight,
     /// whatever the length of the substep.
     pub(super) fn begin(&self, places: &mut [Vector64], starts: &[Vector64], pulled: &mut [Vector64], dt: f64) {
         let stiffness = self.stiffness(dt);

@@ -166,7 +166,7 @@ impl Grips {
         self.responses.iter().map(of).sum()
     }
 
-    /// The direction less its pull: what the system makes of it.
+    /// The product of system and direction: the direction less its pull.
     pub fn take_from_direction(&mut self) {
         self.sums.iter_mut().zip(&self.direction).for_each(|(sum, p)| *sum = std::array::from_fn(|k| p[k] - sum[k]));
     }

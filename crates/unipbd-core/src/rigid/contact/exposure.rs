@@ -82,7 +82,7 @@ pub(super) fn cut(covered: &[(usize, [f64; 2])], exposed: &mut [[f64; 2]], corne
     let (mut parts, mut any, n) = (covered.to_vec(), false, exposed.len());
     parts.sort_by(|p, q| p.0.cmp(&q.0).then(p.1[0].total_cmp(&q.1[0])));
     let whole: Vec<f64> = exposed.iter().map(|part| part[1]).collect();
-    // From both ends: what is covered in the middle of an edge stays exposed.
+    // From both ends: an edge that is covered in its middle alone stays exposed there.
     for &(edge, [from, to]) in &parts {
         if from <= exposed[edge][0] + 1e-9 * whole[edge].abs() {
             exposed[edge][0] = exposed[edge][0].max(to);

@@ -209,11 +209,11 @@ impl Islands {
 
     /// Links two dynamic bodies; a body in contact with a moving kinematic body cannot rest.
     fn unite(&mut self, bodies: &Bodies, a: u32, b: u32) {
-        let scripted = |id: u32| !bodies.is_dynamic(id as usize) && bodies.is_active(id as usize);
+        let kinematic = |id: u32| !bodies.is_dynamic(id as usize) && bodies.is_active(id as usize);
         match (bodies.is_dynamic(a as usize), bodies.is_dynamic(b as usize)) {
             (true, true) => self.touching.unite(a, b),
-            (true, false) if scripted(b) => self.rest[a as usize] = 0.0,
-            (false, true) if scripted(a) => self.rest[b as usize] = 0.0,
+            (true, false) if kinematic(b) => self.rest[a as usize] = 0.0,
+            (false, true) if kinematic(a) => self.rest[b as usize] = 0.0,
             _ => {}
         }
     }

@@ -26,7 +26,7 @@ impl Kernel for Load<'_> {
             let on_a = W::rows([x, y, turn_a * per_second, zero]);
             let on_b = W::rows([zero - x, zero - y, zero - turn_b * per_second, zero]);
             for (rows, bodies) in [(on_a, &block.bodies[0]), (on_b, &block.loaded)] {
-                // One after the other: what contacts do not move may be in several lanes.
+                // One after the other: bodies that contacts do not move may be in several lanes.
                 for (push, &body) in rows.iter().zip(bodies) {
                     let sum = &mut self.loads[body as usize];
                     *sum = (lanes.row(sum) + lanes.row(push)).to_array();

@@ -57,8 +57,8 @@ fn check_points(checker: &mut Checker, path: &KeyPath, points: &Points) {
     let fastest = points.velocities.iter().map(|v| libm::hypot(v[0], v[1])).fold(0.0, f64::max);
     check_throw(checker, path.then("velocities"), fastest);
     let smoke = checker.materials.get(points.material.as_str()).is_some_and(|known| known.phase() == Phase::Smoke);
-    if smoke && points.motion == PointMotion::Scripted {
-        checker.problem(path.then("motion"), "smoke moves with its carrier, not by a script", "leave it out");
+    if smoke && points.motion == PointMotion::Kinematic {
+        checker.problem(path.then("motion"), "smoke moves with its carrier, not by itself", "leave it out");
     }
 }
 

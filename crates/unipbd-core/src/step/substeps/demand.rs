@@ -19,7 +19,7 @@ const PRESSURE_MARGIN: f64 = 8.0;
 const UNEXPECTED: f64 = 3.0;
 /// Margin of the pressure by which the grid stops what moves.
 const STOPPED: f64 = 0.25;
-/// Speed limit, in spacings per frame, that is always granted to a compressed liquid.
+/// Speed limit, in spacings per frame, that a compressed liquid is always allowed.
 const LEAST_SPEED: f64 = 2.0;
 
 impl World {
@@ -203,7 +203,7 @@ impl World {
         }
     }
 
-    /// The same with hooks: what they have in common presses along the whole depth, the rest from all sides.
+    /// The same with hooks: the acceleration common to all presses along the whole depth, the rest from all sides.
     fn pushed_pressure(&self, of: FluidStatistics) -> f64 {
         let half = 0.5 * self.extent().into_iter().fold(0.0, f64::max);
         let depth = if of.depth().is_finite() { of.depth() } else { 0.0 };
