@@ -11,21 +11,16 @@ mod wind;
 mod xsph;
 
 #[doc(hidden)]
-pub use baroclinic::Baroclinic;
-#[doc(hidden)]
-pub use conduction::Conduction;
-#[doc(hidden)]
-pub use confinement::VorticityConfinement;
-#[doc(hidden)]
-pub use drag::{Drag, DragLaw};
-#[doc(hidden)]
-pub use heating::Heating;
-#[doc(hidden)]
-pub use smoke::{Advected, SmokeAdvection};
-#[doc(hidden)]
-pub use wind::Wind;
-#[doc(hidden)]
-pub use xsph::Xsph;
+pub use self::{
+    baroclinic::Baroclinic,
+    conduction::Conduction,
+    confinement::VorticityConfinement,
+    drag::{Drag, DragLaw},
+    heating::Heating,
+    smoke::{Advected, SmokeAdvection},
+    wind::Wind,
+    xsph::Xsph,
+};
 
 use crate::bytes::held;
 use crate::constraints::{Needs, Substep};

@@ -177,32 +177,23 @@ impl Blocks {
 
     /// Gives the contacts the impulses of their lanes, and what was measured there; nothing if they have it.
     pub fn give_back(&mut self, contacts: &mut [Contact], with_geometry: bool) {
-        if !std::mem::take(&mut self.live) {
-            return;
-        }
-        for (number, contact) in contacts.iter_mut().enumerate() {
-            self.give_back_to(number, contact, with_geometry);
-        }
-    }
-
-    /// The same for a copy of one contact.
-    pub fn noted(&self, number: usize, contact: &Contact, with_geometry: bool) -> Contact {
-        let mut noted = *contact;
         if self.live {
-            self.give_back_to(number, &mut noted, with_geometry);
+            for (number, contact) in contacts.iter_mut().enumerate() {
+                self.give_back_to(number, contact, with_geometry);
+            }
+            self.live = false;
         }
-        noted
     }
 
+    /// The same for one contact, or a copy of it.
     #[inline(always)]
-    fn give_back_to(&self, number: usize, contact: &mut Contact, with_geometry: bool) {
-        if self.slots[number] == NONE {
-            return;
-        }
-        let (at, lane) = self.slot(number);
-        self.all[at].give_impulses(lane, contact);
-        if with_geometry {
-            self.all[at].give_geometry(lane, contact);
+    pub fn give_back_to(&self, number: usize, contact: &mut Contact, with_geometry: bool) {
+        if self.live && self.slots[number] != NONE {
+            let (at, lane) = self.slot(number);
+            self.all[at].give_impulses(lane, contact);
+            if with_geometry {
+                self.all[at].give_geometry(lane, contact);
+            }
         }
     }
 

@@ -103,14 +103,6 @@ impl Blocks {
         self.slots[number] = NONE;
         self.changes += 1;
     }
-
-    /// Gives a contact the impulses of its lane.
-    pub fn give_impulses(&self, number: usize, contact: &mut Contact) {
-        if self.live {
-            let (at, lane) = self.slot(number);
-            self.all[at].give_impulses(lane, contact);
-        }
-    }
 }
 
 impl NarrowPhase {

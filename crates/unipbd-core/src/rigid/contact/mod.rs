@@ -231,16 +231,14 @@ impl Contacts {
             *force = std::mem::take(impulse) / frame_time;
         }
         self.narrow_phase.begin_frame(frame_time);
-        if self.settings.sleep.is_some() {
-            // Otherwise they stay in the lanes until they are read.
+        if let Some(settings) = self.settings.sleep {
+            // Without sleep they stay in the lanes until they are read.
             self.note_impulses();
-        }
-        if let Some(settings) = &self.settings.sleep {
             let fell_asleep = self.islands.sleep(
                 bodies,
                 self.narrow_phase.contacts(),
                 &self.joints,
-                settings,
+                &settings,
                 (frame_time, self.gravity),
             );
             if fell_asleep {
@@ -275,7 +273,11 @@ impl Contacts {
     fn noted(&self) -> impl Iterator<Item = (Contact, &ContactCache)> + '_ {
         let in_lanes = self.in_lanes();
         let rows = self.narrow_phase.contacts().iter().zip(self.narrow_phase.caches()).enumerate();
-        rows.map(move |(number, (contact, cache))| (self.blocks.noted(number, contact, in_lanes), cache))
+        rows.map(move |(number, (contact, cache))| {
+            let mut noted = *contact;
+            self.blocks.give_back_to(number, &mut noted, in_lanes);
+            (noted, cache)
+        })
     }
 
     /// Whether lanes hold impulses that the contacts do not have yet.

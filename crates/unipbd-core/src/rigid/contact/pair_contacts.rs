@@ -175,7 +175,7 @@ impl PairContacts<'_> {
         out.known.clear();
         out.known.extend_from_slice(&known.contacts[span.range()]);
         if let Some(blocks) = self.staying {
-            span.range().zip(&mut out.known).for_each(|(number, contact)| blocks.give_impulses(number, contact));
+            span.range().zip(&mut out.known).for_each(|(number, contact)| blocks.give_back_to(number, contact, false));
         }
         for (contact, cache) in out.contacts[start..].iter_mut().zip(&out.caches[start..]) {
             keep((contact, cache), (&out.known, &known.caches[span.range()]), near, scale);

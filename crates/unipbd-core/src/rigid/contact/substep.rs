@@ -27,7 +27,6 @@ impl Contacts {
         self.moment = StepContext { dt, last_dt, gravity, slow: 2.0 * self.gravity * dt };
         let mut found = self.search(bodies);
         while bodies.asleep.contains(&true) {
-            self.note_impulses();
             self.narrow_phase.measure();
             if !self.islands.wake_touched(bodies, self.narrow_phase.contacts(), &self.joints, dt) {
                 break;
